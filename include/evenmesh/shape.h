@@ -1,0 +1,69 @@
+#pragma once
+/// What can be meshed: triangle meshes as solids, implicit expressions, indicator functions, built-in shapes.
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "evenmesh/mesh.h"
+
+namespace evenmesh {
+
+class Field;
+
+/// Something with an inside, and so with a surface. Cheap to copy.
+struct Shape {
+  std::string name;  ///< for messages
+  Box bounds;        ///< where the surface is sought, model units; empty: to be found (implicit shapes only)
+  /// A triangle mesh is a solid by its winding number (non-zero = inside); a field is a solid where f < 0.
+  std::variant<std::shared_ptr<const Mesh>, std::shared_ptr<const Field>> what;
+  /// The solid leaves its bounds and is closed by them on purpose, or may be (then a cut is worth a warning).
+  bool capped_by_bounds = false;
+
+  const Mesh* mesh() const {
+    const auto* p = std::get_if<std::shared_ptr<const Mesh>>(&what);
+    return p ? p->get() : nullptr;
+  }
+  const Field* field() const {
+    const auto* p = std::get_if<std::shared_ptr<const Field>>(&what);
+    return p ? p->get() : nullptr;
+  }
+};
+
+/// A solid bounded by triangles, in any orientation; bounds are those of the used vertices.
+/// @throws UnusableInput if the mesh has no triangle; InvalidInput if an index or coordinate is invalid
+Shape shape_from_mesh(Mesh mesh, std::string name = "mesh");
+
+/// The solid f < 0 of an expression in x, y, z (and r = √(x²+y²+z²)).
+///
+/// Operators + - * / ^ (right-associative, binds tighter than unary minus), implicit multiplication (4x, 2(x+1), x y);
+/// functions sin cos tan asin acos atan atan2 exp log sqrt abs min max floor mod sign; constants pi, e; `parameters`.
+/// One '=' is allowed: "a = b" stands for a − (b).
+/// @param bounds  empty: a box is sought (interval arithmetic, starting from the origin) when the shape is sampled
+/// @throws InvalidInput  with the column (1-based) and a caret under it
+Shape shape_from_expression(std::string_view expression, const std::map<std::string, double>& parameters = {},
+                            const Box& bounds = {});
+
+/// The solid where inside(p) is true. Normals are estimated from neighbouring samples.
+/// @param inside  must be callable from several threads at once
+/// @throws InvalidInput if bounds are empty
+Shape shape_from_indicator(std::function<bool(const Vec3&)> inside, const Box& bounds, std::string name = "indicator");
+
+/// One built-in shape; see gallery_names().
+/// @throws InvalidInput  unknown name; the message lists close ones
+Shape gallery_shape(std::string_view name);
+
+struct GalleryEntry {
+  std::string_view name, formula;
+  std::string_view topology;        ///< what is known of it, in words
+  std::optional<int> euler;         ///< Euler number of the surface, when known
+  bool fractal = false;
+};
+const std::vector<GalleryEntry>& gallery();
+
+}  // namespace evenmesh

@@ -1,0 +1,38 @@
+#pragma once
+/// The one façade for threads (oneTBB behind it).
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <cstddef>
+
+#include "evenmesh/run.h"
+
+namespace evenmesh {
+
+/// Runs `body()` with at most run.threads() threads; parallel_for calls inside it obey the limit.
+template <typename Body>
+auto with_threads(const Run& run, Body&& body) {
+  tbb::task_arena arena(run.threads() == 0 ? tbb::task_arena::automatic : static_cast<int>(run.threads()));
+  return arena.execute(body);
+}
+
+/// Calls body(begin, end) over pieces of [0, count) of at least `grain` items, in parallel; honours cancel between pieces.
+template <typename Body>
+void parallel_for(const Run& run, std::size_t count, std::size_t grain, const Body& body) {
+  if (count == 0) return;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const tbb::blocked_range<std::size_t>& range) {
+    run.throw_if_cancelled();
+    body(range.begin(), range.end());
+  });
+}
+
+/// Calls body(i) for every i in [0, count), each a task of its own: for few, large items.
+template <typename Body>
+void parallel_tasks(const Run& run, std::size_t count, const Body& body) {
+  parallel_for(run, count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+}  // namespace evenmesh

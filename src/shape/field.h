@@ -1,0 +1,48 @@
+#pragma once
+/// Scalar fields: implicit surfaces f = 0, inside where f < 0.
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "evenmesh/mesh.h"
+
+namespace evenmesh {
+
+/// Closed interval of reals; [-inf, inf] when nothing is known.
+struct Interval {
+  double lo = 0, hi = 0;
+};
+
+/// Points in structure-of-arrays form; all spans have the same length.
+struct PointBatch {
+  std::span<const float> x, y, z;
+};
+
+/// A function of space. Implementations are immutable and may be evaluated from several threads at once.
+///
+/// NaN counts as outside. Same inputs give the same bits wherever they stand in a batch, for any batch size.
+class Field {
+ public:
+  virtual ~Field() = default;
+
+  /// values[i] = f(point i). Cost: a few nanoseconds per point and operation; best with 256 points or more.
+  virtual void evaluate(const PointBatch& points, std::span<float> values) const = 0;
+
+  /// Also the gradient of f. The default differentiates numerically by central differences with the step `epsilon()`.
+  virtual void evaluate_gradient(const PointBatch& points, std::span<float> values, std::span<float> dx,
+                                 std::span<float> dy, std::span<float> dz) const;
+
+  /// Encloses f over a box; the default knows nothing ([-inf, inf]), then nothing is pruned.
+  virtual Interval evaluate(const Box& box) const;
+
+  /// f and its gradient at one point in double precision; gradient may be null. The default rounds through evaluate().
+  virtual double evaluate(const Vec3& point, Vec3* gradient) const;
+
+  /// Step for numerical derivatives, model units.
+  virtual double epsilon() const { return 1e-4; }
+  /// True when f has a usable gradient; false for indicator functions, whose value is only -1 or 1.
+  virtual bool has_gradient() const { return true; }
+};
+
+}  // namespace evenmesh
