@@ -1,18 +1,62 @@
 # The installed library (all rooms in one archive), the program, tests, benchmarks, fuzzers.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
 
-# One test program per folder of tests/; it links the room of the same name, or everything.
+# The library: one archive, so that whoever installs it need not know the rooms.
+set(objects "")
+foreach(room ${EVENMESH_ROOMS})
+  list(APPEND objects $<TARGET_OBJECTS:evenmesh_${room}>)
+endforeach()
+add_library(evenmesh_library STATIC ${objects})
+add_library(evenmesh::evenmesh ALIAS evenmesh_library)
+set_target_properties(evenmesh_library PROPERTIES OUTPUT_NAME evenmesh EXPORT_NAME evenmesh LINKER_LANGUAGE CXX)
+target_compile_features(evenmesh_library PUBLIC cxx_std_20)
+target_include_directories(evenmesh_library INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+# Header-only libraries are used up by now; the others must be linked by whoever links the archive.
+list(REMOVE_DUPLICATES EVENMESH_LIBRARIES)
+list(REMOVE_ITEM EVENMESH_LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
+target_link_libraries(evenmesh_library INTERFACE ${EVENMESH_LIBRARIES})
+
+install(TARGETS evenmesh_library EXPORT evenmeshTargets)
+install(DIRECTORY include/evenmesh DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(EXPORT evenmeshTargets NAMESPACE evenmesh:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evenmesh)
+configure_package_config_file(cmake/evenmeshConfig.cmake.in evenmeshConfig.cmake
+                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evenmesh)
+write_basic_package_version_file(evenmeshConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/evenmeshConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/evenmeshConfigVersion.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evenmesh)
+
+# The program. It sees the public headers only, like any other user of the library.
+find_package(CLI11 REQUIRED)
+file(GLOB sources CONFIGURE_DEPENDS apps/cli/*.cpp)
+add_executable(evenmesh ${sources})
+target_link_libraries(evenmesh PRIVATE evenmesh_flags evenmesh_library CLI11::CLI11 fmt::fmt
+                                       nlohmann_json::nlohmann_json)
+target_compile_definitions(evenmesh PRIVATE EVENMESH_VERSION="${PROJECT_VERSION}")
+set_target_properties(evenmesh PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+install(TARGETS evenmesh)
+
 if(EVENMESH_TESTS)
-  enable_testing()
-  find_package(GTest REQUIRED)
-  include(GoogleTest)
-  foreach(room ${EVENMESH_ROOMS})
-    file(GLOB sources CONFIGURE_DEPENDS tests/${room}/*.cpp)
-    if(sources)
-      add_executable(test_${room} ${sources})
-      target_include_directories(test_${room} PRIVATE tests)
-      target_link_libraries(test_${room} PRIVATE evenmesh_flags evenmesh_${room} GTest::gtest_main)
-      target_compile_definitions(test_${room} PRIVATE EVENMESH_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-      gtest_discover_tests(test_${room} TEST_PREFIX ${room}. DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
-    endif()
+  include(cmake/tests.cmake)
+endif()
+
+if(EVENMESH_BENCH)
+  find_package(benchmark REQUIRED)
+  file(GLOB benches CONFIGURE_DEPENDS bench/*.cpp)
+  foreach(source ${benches})
+    get_filename_component(name ${source} NAME_WE)
+    add_executable(${name} ${source})
+    target_include_directories(${name} PRIVATE src)
+    target_link_libraries(${name} PRIVATE evenmesh_flags evenmesh_library Eigen3::Eigen benchmark::benchmark_main)
   endforeach()
 endif()
+
+file(GLOB examples CONFIGURE_DEPENDS examples/*.cpp)
+foreach(source ${examples})
+  get_filename_component(name ${source} NAME_WE)
+  add_executable(example_${name} EXCLUDE_FROM_ALL ${source})
+  target_link_libraries(example_${name} PRIVATE evenmesh_flags evenmesh_library)
+endforeach()
+
+include(cmake/fuzz.cmake OPTIONAL)

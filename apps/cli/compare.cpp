@@ -1,0 +1,86 @@
+/// evenmesh compare: how far two meshes are from each other.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "evenmesh/measure.h"
+#include "input.h"
+#include "interrupt.h"
+#include "output.h"
+#include "values.h"
+
+namespace evenmesh::cli {
+namespace {
+
+struct CompareArguments {
+  std::string a, b, samples = "500000", threads = "0";
+  bool json = false;
+};
+
+std::string text(const MeshDistance& d) {
+  const auto row = [&](const char* name, double there, double back) {
+    const double both = std::max(there, back), diagonal = d.reference_diagonal;
+    return fmt::format("  {:<12} {:>12.6g} {:>12.6g} {:>12.6g} {:>11.4f} %\n", name, there, back, both,
+                       diagonal > 0 ? 100 * both / diagonal : 0.0);
+  };
+  return fmt::format("  {:<12} {:>12} {:>12} {:>12} {:>13}\n", "", "A to B", "B to A", "both", "of diagonal") +
+         row("Hausdorff", d.a_to_b_max, d.b_to_a_max) + row("RMS", d.a_to_b_rms, d.b_to_a_rms) +
+         row("mean", d.a_to_b_mean, d.b_to_a_mean) +
+         fmt::format("  normals deviate by {:.2f}° on average; diagonal of B {:.6g}\n", d.normal_deviation_avg,
+                     d.reference_diagonal);
+}
+
+std::string json(const MeshDistance& d) {
+  const double diagonal = d.reference_diagonal;
+  const double rms = std::max(d.a_to_b_rms, d.b_to_a_rms);
+  const auto relative = [&](double length) { return diagonal > 0 ? length / diagonal : 0.0; };
+  const nlohmann::ordered_json object{{"hausdorff", d.hausdorff()},
+                                      {"hausdorff_relative", relative(d.hausdorff())},
+                                      {"rms", rms},
+                                      {"rms_relative", relative(rms)},
+                                      {"a_to_b_max", d.a_to_b_max},
+                                      {"b_to_a_max", d.b_to_a_max},
+                                      {"a_to_b_rms", d.a_to_b_rms},
+                                      {"b_to_a_rms", d.b_to_a_rms},
+                                      {"a_to_b_mean", d.a_to_b_mean},
+                                      {"b_to_a_mean", d.b_to_a_mean},
+                                      {"normal_deviation_avg", d.normal_deviation_avg},
+                                      {"reference_diagonal", diagonal}};
+  return object.dump(2) + "\n";
+}
+
+int run_compare(const CompareArguments& a) {
+  const CompareOptions options{.samples = whole_number("--samples", a.samples, 1, 1'000'000'000)};
+  if (a.a == "-" && a.b == "-") throw InvalidInput("only one of the two meshes can come from standard input");
+  Run run(static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024)));
+  const CancelOnInterrupt interrupt(run);
+  const Mesh first = read_mesh_file("compare", a.a, run);
+  const Mesh second = read_mesh_file("compare", a.b, run);
+  const MeshDistance distance = compare_meshes(first, second, options, run);
+  write_output("-", a.json ? json(distance) : text(distance));
+  return Status::done;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, Action& action) {
+  const auto a = std::make_shared<CompareArguments>();
+  CLI::App* command =
+      app.add_subcommand("compare", "two-sided Hausdorff distance, RMS and normal deviation of two meshes");
+  command->add_option("A", a->a, "mesh file, or - for standard input")->type_name("")->required();
+  command->add_option("B", a->b, "reference mesh: its diagonal is the unit of relative figures")
+      ->type_name("")
+      ->required();
+  command->add_option("--samples", a->samples, "points spread over each mesh, 1 to 1000000000; default 500000")
+      ->type_name("N");
+  command->add_flag("--json", a->json, "print one JSON object instead");
+  command->add_option("-j,--threads", a->threads, "number of threads, 0 to 1024; default 0 = one per processor")
+      ->type_name("N");
+  command->callback([a, &action] { action = [a] { return run_compare(*a); }; });
+}
+
+}  // namespace evenmesh::cli

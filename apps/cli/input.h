@@ -1,0 +1,30 @@
+#pragma once
+/// Inputs of the commands: files, expressions, built-in shapes, standard input.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "evenmesh/mesh.h"
+#include "evenmesh/run.h"
+#include "evenmesh/shape.h"
+
+namespace evenmesh::cli {
+
+/// Everything that may name an input on a command line.
+struct InputArguments {
+  std::vector<std::string> positional;       ///< file, "-", or "gallery:NAME"
+  std::vector<std::string> expressions;      ///< -e
+  std::map<std::string, double> parameters;  ///< -D
+};
+
+/// The one shape that the arguments name.
+/// @throws InvalidInput   none or several inputs, an expression or name that is wrong
+/// @throws NotAvailable   an input kind that this version does not contain
+/// @throws UnusableInput  a file that cannot be read
+Shape read_shape(const InputArguments& input, const Box& bounds, Run& run);
+
+/// A mesh file, or standard input for "-". Throws like read_shape.
+Mesh read_mesh_file(const std::string& command, const std::string& name, Run& run);
+
+}  // namespace evenmesh::cli

@@ -1,0 +1,83 @@
+/// The program `evenmesh`: finds the command, turns errors into sentences and exit statuses.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "command.h"
+#include "interrupt.h"
+#include "terminal.h"
+
+namespace {
+
+using namespace evenmesh;
+using cli::say;
+using cli::Status;
+
+void describe(CLI::App& app) {
+  app.name("evenmesh");
+  app.get_formatter()->column_width(34);
+  app.require_subcommand(0, 1);
+  app.set_version_flag("--version", "evenmesh " EVENMESH_VERSION);
+  app.set_help_flag("-h,--help", "print this and exit");
+  app.footer(
+      "evenmesh COMMAND --help shows every option with default, unit and range.\n\n"
+      "Exit status: 0 done, 1 internal error, 2 wrong usage, 3 input cannot be read or holds no surface,\n"
+      "4 done but a promise could not be kept (said which), 130 cancelled (nothing written).");
+}
+
+int parse_and_act(int argc, char** argv) {
+  CLI::App app("evenmesh: any surface in, an even mesh out.");
+  describe(app);
+  cli::Action action;
+  cli::add_mesh_command(app, action);
+  cli::add_info_command(app, action);
+  cli::add_compare_command(app, action);
+  cli::add_gallery_command(app, action);
+  cli::add_render_command(app, action);
+  cli::add_unavailable_commands(app, action);
+  if (argc > 1 && argv[1][0] != '-' && !app.get_subcommand_no_throw(argv[1])) {
+    throw InvalidInput(fmt::format("there is no command '{}'; evenmesh --help lists them", argv[1]));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    throw InvalidInput(error.what());
+  }
+  if (!action) {
+    fmt::print(stderr, "{}", app.help());
+    return Status::wrong_usage;
+  }
+  return action();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::watch_for_interrupts();
+  try {
+    return parse_and_act(argc, argv);
+  } catch (const Cancelled&) {
+    fmt::print(stderr, "cancelled; nothing was written\n");
+    return Status::cancelled;
+  } catch (const cli::WriteFailed& error) {
+    say("error", error.what());
+    return Status::internal_error;
+  } catch (const UnusableInput& error) {
+    say("error", error.what());
+    return Status::unusable_input;
+  } catch (const Error& error) {  // InvalidInput, NotAvailable
+    say("error", error.what());
+    return Status::wrong_usage;
+  } catch (const std::bad_alloc&) {
+    say("error", "out of memory; ask for fewer vertices or a lower resolution");
+    return Status::internal_error;
+  } catch (const std::exception& error) {
+    say("internal error", error.what());
+    return Status::internal_error;
+  }
+}

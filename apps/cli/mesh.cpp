@@ -1,0 +1,41 @@
+/// evenmesh mesh: the main job.
+
+#include <memory>
+
+#include "command.h"
+#include "meshing.h"
+
+namespace evenmesh::cli {
+
+void add_mesh_command(CLI::App& app, Action& action) {
+  const auto a = std::make_shared<MeshingArguments>();
+  CLI::App* command = app.add_subcommand("mesh", "any surface in, an even triangle mesh out");
+  command->footer(
+      "Examples:\n  evenmesh mesh scan.stl -n 20000 -o even.ply\n  evenmesh mesh -e 'x^2+y^2+z^2-1' -l 0.05 -o "
+      "ball.obj\n"
+      "  evenmesh mesh gallery:octic -n 20000 -o octic.ply --report octic.html");
+  const std::string group = "What goes in";
+  command
+      ->add_option("INPUT", a->input.positional,
+                   "mesh file (.stl .obj .ply .off .glb .3mf), - for standard input, or gallery:NAME")
+      ->type_name("");
+  command
+      ->add_option("-e,--expression", a->input.expressions,
+                   "solid where an expression in x, y, z is below 0, instead of INPUT")
+      ->type_name("EXPR")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group(group);
+  command->add_option("-D,--define", a->definitions, "value of a parameter of the expression, e.g. -D a=0.5")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group(group);
+  command->add_option("--entry", a->entry, "function in a GLSL file; not available in this version")
+      ->type_name("NAME")
+      ->group(group);
+  add_meshing_options(*command, *a);
+  command->callback([a, &action] { action = [a] { return run_meshing(*a); }; });
+}
+
+}  // namespace evenmesh::cli

@@ -1,0 +1,189 @@
+#include "meshing.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "evenmesh/render.h"
+#include "interrupt.h"
+#include "output.h"
+#include "summary.h"
+#include "terminal.h"
+#include "values.h"
+
+namespace evenmesh::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Options that are documented but not built yet: never silently ignored.
+void refuse_planned_options(const MeshingArguments& a) {
+  if (!a.error.empty()) not_available("--error");
+  if (!a.thickness.empty()) not_available("--thickness");
+  if (!a.max_cycle.empty()) not_available("--max-cycle");
+  if (!a.dump_dexels.empty()) not_available("--dump-dexels");
+  if (!a.entry.empty()) not_available("--entry");
+  choice("--method", a.method, {"auto", "raster"}, {"shell"});
+  choice("--connect", a.connect, {"complex"}, {"fragments", "flood"});
+  choice("--topology", a.topology, {"keep"}, {"simplify"});
+  choice("--backend", a.backend, {"cpu"}, {"gl"});
+  if (a.features != "off") {
+    if (a.features != "auto") real_number("--features", a.features, 0, 180);
+    not_available("--features " + a.features);
+  }
+  if (a.density != "uniform") not_available("--density " + a.density);
+}
+
+MeshOptions mesh_options(const MeshingArguments& a) {
+  MeshOptions options;
+  if (!a.vertices.empty() && !a.edge_length.empty()) {
+    throw InvalidInput("-n and -l both say how fine the mesh is; give one of them");
+  }
+  if (!a.vertices.empty()) options.vertices = whole_number("-n", a.vertices, 4, 1'000'000'000);
+  if (!a.edge_length.empty()) {
+    options.edge_length = real_number("-l", a.edge_length);
+    if (!(*options.edge_length > 0)) {
+      throw InvalidInput(fmt::format("-l takes a length above 0; {} is out of range", a.edge_length));
+    }
+  }
+  if (!a.resolution.empty()) options.resolution = whole_number("-r", a.resolution, 8, 8192);
+  if (!a.bounds.empty()) options.bounds = box("--bounds", a.bounds);
+  options.quality = static_cast<Quality>(choice("--quality", a.quality, {"fast", "normal", "high"}));
+  options.optimizer = static_cast<Optimizer>(choice("--optimizer", a.optimizer, {"lbfgs", "lloyd"}));
+  options.start = static_cast<Start>(choice("--start", a.start, {"random", "blue-noise", "coarse-to-fine"}));
+  options.placement =
+      static_cast<Placement>(choice("--placement", a.placement, {"centroid", "constrained", "quadric"}));
+  if (!a.iterations.empty()) options.iterations = whole_number("--iterations", a.iterations, 0, 10'000);
+  if (!a.tolerance.empty()) {
+    options.tolerance = real_number("--tolerance", a.tolerance);
+    if (!(options.tolerance > 0 && options.tolerance < 1)) {
+      throw InvalidInput(
+          fmt::format("--tolerance takes a number above 0 and below 1; {} is out of range", a.tolerance));
+    }
+  }
+  options.seed = whole_number("--seed", a.seed, 0);
+  return options;
+}
+
+Json options_json(const MeshingArguments& a, unsigned threads) {
+  Json json = Json::object();
+  const auto given = [&](const char* key, const std::string& text) {
+    if (!text.empty()) json[key] = text;
+  };
+  if (a.input.positional.empty()) {
+    given("expression", a.input.expressions.at(0));
+  } else {
+    given("input", a.input.positional[0]);
+  }
+  for (const auto& [name, value] : a.input.parameters) json["parameters"][name] = value;
+  given("output", a.output);
+  given("vertices", a.vertices);
+  given("edge_length", a.edge_length);
+  given("resolution", a.resolution);
+  given("bounds", a.bounds);
+  given("quality", a.quality);
+  given("method", a.method);
+  given("optimizer", a.optimizer);
+  given("iterations", a.iterations);
+  given("tolerance", a.tolerance);
+  given("start", a.start);
+  given("seed", a.seed);
+  given("placement", a.placement);
+  given("connect", a.connect);
+  given("topology", a.topology);
+  given("features", a.features);
+  given("density", a.density);
+  given("backend", a.backend);
+  json["threads"] = threads;
+  return json;
+}
+
+std::string run_json(const Report& report, const MeshingArguments& a, unsigned threads) {
+  Json json = Json::parse(report_json(report));
+  json["version"] = EVENMESH_VERSION;
+  json["options"] = options_json(a, threads);
+  return json.dump(2) + "\n";
+}
+
+/// What the checks of the command line leave to do.
+struct Plan {
+  MeshOptions options;
+  MeshOutput output;
+  unsigned threads = 0;
+  Talk talk = Talk::normal;
+};
+
+Plan check(MeshingArguments& a) {
+  refuse_planned_options(a);
+  Plan plan;
+  plan.options = mesh_options(a);
+  plan.threads = static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024));
+  choice("--progress", a.progress, {"auto", "on", "off"});
+  if (a.quiet && a.verbose) throw InvalidInput("-q and -v contradict each other; give one of them");
+  plan.talk = a.quiet ? Talk::quiet : a.verbose ? Talk::verbose : Talk::normal;
+  for (const std::string& text : a.definitions)
+    a.input.parameters.insert_or_assign(definition("-D", text).first, definition("-D", text).second);
+  plan.output = check_mesh_output(a.output, a.format);
+  if (!a.report.empty()) check_output("--report", a.report);
+  if (!a.json.empty()) check_output("--json", a.json);
+  if ((a.output == "-") + (a.json == "-") + (a.report == "-") > 1) {
+    throw InvalidInput("only one of -o, --json and --report can go to standard output");
+  }
+  return plan;
+}
+
+bool tell_notices(const Report& report, Talk talk) {
+  bool kept = true;
+  for (const Notice& notice : report.notices) {
+    kept = kept && !notice.promise_broken;
+    if (notice.promise_broken) {
+      say("promise not kept", notice.text);
+    } else if (talk != Talk::quiet) {
+      say("warning", notice.text);
+    }
+  }
+  return kept;
+}
+
+}  // namespace
+
+int run_meshing(MeshingArguments a) {
+  const auto start = std::chrono::steady_clock::now();
+  const Plan plan = check(a);
+  Run run(plan.threads);
+  const CancelOnInterrupt interrupt(run);
+  MeshResult result;
+  std::string html;
+  double reading = 0;
+  {
+    Terminal terminal(run, plan.talk, a.progress);
+    const Shape shape = read_shape(a.input, plan.options.bounds.value_or(Box{}), run);
+    reading = seconds_since(start);
+    result = mesh_shape(shape, plan.options, run);
+    auto& seconds = result.report.seconds;
+    seconds.insert(seconds.begin(), {"read", reading});
+    if (!a.report.empty()) html = report_html(result, shape.name, run);
+  }
+  {
+    const WritingGuard guard;
+    const auto writing = std::chrono::steady_clock::now();
+    write_output(plan.output, result.mesh);
+    result.report.seconds.emplace_back("write", seconds_since(writing));
+    if (!a.report.empty()) write_output(a.report, html);
+    if (!a.json.empty()) write_output(a.json, run_json(result.report, a, plan.threads));
+  }
+  const bool kept = tell_notices(result.report, plan.talk);
+  if (plan.talk != Talk::quiet) {
+    const bool stdout_taken = a.output == "-" || a.json == "-" || a.report == "-";
+    fmt::print(stdout_taken ? stderr : stdout, "{}", summary(result.report, a.output, seconds_since(start)));
+  }
+  return kept ? Status::done : Status::promise_broken;
+}
+
+}  // namespace evenmesh::cli

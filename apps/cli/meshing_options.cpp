@@ -1,0 +1,76 @@
+#include "meshing.h"
+
+namespace evenmesh::cli {
+namespace {
+
+void add_what(CLI::App& app, MeshingArguments& a) {
+  const std::string group = "What comes out";
+  const auto option = [&](const char* name, std::string& text, const char* type, const char* description) {
+    app.add_option(name, text, description)->type_name(type)->group(group);
+  };
+  option("-o,--output", a.output, "FILE", "mesh to write: .ply .obj .stl .off .glb .3mf, or - for standard output");
+  option("--format", a.format, "FORMAT",
+         "format of the output, ply|obj|stl|off|glb|3mf; default: by extension, ply for -");
+  option(
+      "-n,--vertices", a.vertices, "N",
+      "number of vertices, 4 to 1000000000, met within 0.5 % unless the\ntopology needs more; default: estimated from "
+      "area and curvature");
+  option("-l,--edge-length", a.edge_length, "L", "mean edge length in model units, above 0; instead of -n");
+  option("--error", a.error, "E", "largest deviation as a fraction of the diagonal; not available in this version");
+  option("-r,--resolution", a.resolution, "R",
+         "samples along the longest side of the bounds, 8 to 8192;\ndefault: 100 samples per vertex or more");
+  option(
+      "--bounds", a.bounds, "BOX",
+      "x0,y0,z0,x1,y1,z1 in model units: where the surface is sought;\na surface cut by it is capped; default: found");
+  option("--topology", a.topology, "keep",
+         "keep: add vertices where the topology needs them (simplify: not available)");
+  option("--features", a.features, "off", "sharp edges: off (auto, ANGLE: not available)");
+  option("--density", a.density, "uniform", "sizing: uniform (curvature, FILE, EXPR: not available)");
+}
+
+void add_effort(CLI::App& app, MeshingArguments& a) {
+  const std::string group = "Optimization";
+  const auto option = [&](const char* name, std::string& text, const char* type, const char* description) {
+    app.add_option(name, text, description)->type_name(type)->group(group);
+  };
+  option("--quality", a.quality, "EFFORT",
+         "fast|normal|high (high anneals: more regular, several times slower);\ndefault normal");
+  option("--method", a.method, "METHOD", "sampling: auto|raster (shell: not available); default auto");
+  option("--optimizer", a.optimizer, "NAME", "lbfgs|lloyd; default lbfgs");
+  option("--iterations", a.iterations, "N",
+         "evaluations of the energy per level at most, 0 to 10000;\ndefault: by --quality");
+  option("--tolerance", a.tolerance, "T",
+         "stop when the mean vertex moves less than this share of an edge,\nabove 0, below 1; default 0.0001");
+  option("--start", a.start, "NAME", "random|blue-noise|coarse-to-fine; default coarse-to-fine");
+  option("--seed", a.seed, "S", "of the random numbers, 0 to 18446744073709551615; default 1");
+  option("--placement", a.placement, "NAME", "of the vertices: centroid|constrained|quadric; default quadric");
+  option("--connect", a.connect, "NAME",
+         "cells to triangles: complex (fragments, flood: not available);\ndefault complex");
+  option("--thickness", a.thickness, "D", "half width of a shell in voxels; not available in this version");
+  option("--max-cycle", a.max_cycle, "N", "longest cycle of --connect fragments; not available in this version");
+}
+
+void add_how(CLI::App& app, MeshingArguments& a) {
+  const std::string group = "How it runs (the mesh does not depend on it)";
+  const auto option = [&](const char* name, std::string& text, const char* type, const char* description) {
+    app.add_option(name, text, description)->type_name(type)->group(group);
+  };
+  option("-j,--threads", a.threads, "N", "number of threads, 0 to 1024; default 0 = one per processor");
+  option("--backend", a.backend, "NAME", "cpu (gl: not available); default cpu");
+  option("--report", a.report, "FILE", "write pictures and figures of the run as one HTML page");
+  option("--json", a.json, "FILE", "write the figures of the run as JSON, - for standard output");
+  option("--dump-dexels", a.dump_dexels, "FILE", "write the sampled solid (.tdx); not available in this version");
+  option("--progress", a.progress, "WHEN", "progress bar: auto|on|off; default auto = on a terminal");
+  app.add_flag("-q,--quiet", a.quiet, "say nothing but errors and broken promises")->group(group);
+  app.add_flag("-v,--verbose", a.verbose, "also say what each stage does")->group(group);
+}
+
+}  // namespace
+
+void add_meshing_options(CLI::App& app, MeshingArguments& a) {
+  add_what(app, a);
+  add_effort(app, a);
+  add_how(app, a);
+}
+
+}  // namespace evenmesh::cli

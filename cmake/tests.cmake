@@ -1,0 +1,40 @@
+# One test program per folder of tests/; it links the room of the same name, or everything.
+enable_testing()
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+function(evenmesh_test room)
+  file(GLOB sources CONFIGURE_DEPENDS tests/${room}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(test_${room} ${sources})
+  target_include_directories(test_${room} PRIVATE tests)
+  target_link_libraries(test_${room} PRIVATE evenmesh_flags ${ARGN} GTest::gtest_main)
+  target_compile_definitions(test_${room} PRIVATE EVENMESH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(test_${room} TEST_PREFIX ${room}. DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+                       PROPERTIES TIMEOUT 300)
+endfunction()
+
+foreach(room ${EVENMESH_ROOMS})
+  evenmesh_test(${room} evenmesh_${room})
+endforeach()
+
+# The house: who includes whom, examples that compile.
+evenmesh_test(house)
+# The program, driven from outside.
+evenmesh_test(cli nlohmann_json::nlohmann_json)
+if(TARGET test_cli)
+  add_dependencies(test_cli evenmesh)
+  target_compile_definitions(test_cli PRIVATE EVENMESH_PROGRAM="$<TARGET_FILE:evenmesh>"
+                                              EVENMESH_SANITIZED=$<BOOL:${EVENMESH_SANITIZE}>)
+endif()
+
+# Somebody else's project: finds the installed package, builds against it, runs.
+if(NOT EVENMESH_SANITIZE)
+  add_test(NAME house.consumer
+           COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DCONSUMER=${PROJECT_SOURCE_DIR}/tests/consumer
+                   -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER}
+                   -P ${PROJECT_SOURCE_DIR}/tests/consumer/run.cmake)
+  set_tests_properties(house.consumer PROPERTIES TIMEOUT 300)
+endif()
