@@ -21,7 +21,8 @@ struct Search {
   const std::array<Vec3, 3>* corners;
   Vec3 p;
   ClosestPoint best;
-  double slack;  ///< by which float boxes may be off
+  double scale;  ///< scene units per model unit
+  double slack;  ///< by which float boxes and the float copy of p may be off, scene units
 };
 
 /// The float above x: a radius must never be rounded down.
@@ -42,7 +43,7 @@ bool visit(RTCPointQueryFunctionArguments* args) {
   const bool nearer = squared < best.squared_distance;
   best = {point, args->primID, squared};
   if (!nearer) return false;
-  const float radius = rounded_up(std::sqrt(squared) * (1 + 1e-6) + search.slack);
+  const float radius = rounded_up(search.scale * std::sqrt(squared) * (1 + 1e-6) + search.slack);
   if (!(radius < args->query->radius)) return false;
   args->query->radius = radius;
   return true;
@@ -50,10 +51,10 @@ bool visit(RTCPointQueryFunctionArguments* args) {
 
 /// The nearest triangle within `radius`, if any.
 ClosestPoint search_within(const EmbreeScene& scene, Search search, double radius) {
-  const Vec3 local = search.p - scene.origin();
+  const Vec3 local = scene.to_local(search.p);
   RTCPointQuery query{};
   query.x = static_cast<float>(local.x), query.y = static_cast<float>(local.y), query.z = static_cast<float>(local.z);
-  query.radius = rounded_up(radius * (1 + 1e-6) + search.slack);
+  query.radius = rounded_up(search.scale * radius * (1 + 1e-6) + search.slack);
   search.best.squared_distance = std::nextafter(radius * radius, std::numeric_limits<double>::infinity());
   search.best.triangle = ~0u;
   RTCPointQueryContext context;
@@ -82,17 +83,17 @@ SurfaceQuery::SurfaceQuery(const Mesh& mesh, Run& run) {
 }
 
 ClosestPoint SurfaceQuery::closest(const Vec3& p, double max_distance) const {
-  const double from_origin = norm(p - data_->scene.origin());
+  const double scale = data_->scene.scale(), from_origin = norm(data_->scene.to_local(p)) / scale;
   // Float copies of p and of the corners are both off; p may lie far outside the box.
-  const double slack = 2 * data_->scene.rounding() + from_origin * 0x1p-22;
-  const Search search{data_->corners.data(), p, {}, slack};
-  const double enough = (from_origin + data_->farthest) * (1 + 1e-9) + slack;
+  const double slack = 2 * EmbreeScene::rounding + scale * from_origin * 0x1p-22;
+  const Search search{data_->corners.data(), p, {}, scale, slack};
+  const double enough = (from_origin + data_->farthest) * (1 + 1e-9);
   double radius =
       std::isfinite(max_distance) ? max_distance : std::max(data_->first_radius, from_origin - data_->farthest);
   radius = std::min(radius, enough);
   for (;;) {
     const ClosestPoint result = search_within(data_->scene, search, radius);
-    if (result.found() || radius >= std::min(max_distance, enough)) return result;
+    if (result.found() || !(radius < std::min(max_distance, enough))) return result;
     radius = std::min({2 * radius, max_distance, enough});
   }
 }

@@ -1,6 +1,6 @@
 #include "geometry/embree_scene.h"
 
-#include <limits>
+#include <cmath>
 
 #include "core/parallel.h"
 #include "evenmesh/error.h"
@@ -15,12 +15,14 @@ RTCDevice shared_device() {
   return device.get();
 }
 
-void fill_vertices(RTCGeometry geometry, const Mesh& mesh, const Vec3& origin, const Run& run) {
+void fill_vertices(RTCGeometry geometry, const Mesh& mesh, const EmbreeScene& scene, const Run& run) {
   auto* to = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                          3 * sizeof(float), mesh.vertices.size()));
   parallel_for(run, mesh.vertices.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      for (int k = 0; k < 3; ++k) to[3 * i + k] = static_cast<float>(mesh.vertices[i][k] - origin[k]);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 local = scene.to_local(mesh.vertices[i]);
+      for (int k = 0; k < 3; ++k) to[3 * i + k] = static_cast<float>(local[k]);
+    }
   });
 }
 
@@ -36,8 +38,9 @@ EmbreeScene::EmbreeScene(const Mesh& mesh, const Run& run) {
   if (mesh.triangles.empty()) throw InvalidInput("the mesh has no triangle to search; give one with at least one");
   const Box box = mesh.bounds();
   origin_ = box.center();
-  // Half the diagonal bounds every local coordinate; 2^-24 is the relative error of rounding to float.
-  rounding_ = box.diagonal() * 0x1p-23 + std::numeric_limits<float>::min();
+  // Small and large models alike must stay within the range of float; a power of two rounds nothing.
+  const double diagonal = box.diagonal();
+  if (diagonal > 0) scale_ = std::ldexp(1.0, -std::ilogb(diagonal));
 
   RTCDevice device = shared_device();
   scene_.reset(rtcNewScene(device), rtcReleaseScene);
@@ -45,7 +48,7 @@ EmbreeScene::EmbreeScene(const Mesh& mesh, const Run& run) {
   rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_LOW);
   const std::shared_ptr<RTCGeometryTy> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE), rtcReleaseGeometry);
   with_threads(run, [&] {
-    fill_vertices(geometry.get(), mesh, origin_, run);
+    fill_vertices(geometry.get(), mesh, *this, run);
     fill_triangles(geometry.get(), mesh);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometry(scene_.get(), geometry.get());

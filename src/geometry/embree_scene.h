@@ -18,15 +18,17 @@ class EmbreeScene {
   explicit EmbreeScene(const Mesh& mesh, const Run& run = Run::silent());
 
   RTCScene handle() const { return scene_.get(); }
-  /// What to subtract from a point of the model before it becomes float.
-  const Vec3& origin() const { return origin_; }
-  /// Bound for the distance between a vertex (or any point within the mesh's box) and its float copy, model units.
-  double rounding() const { return rounding_; }
+  /// A point of the model in the scene's coordinates: those of the mesh lie within the ball of radius 1.
+  Vec3 to_local(const Vec3& p) const { return scale_ * (p - origin_); }
+  /// Scene units per model unit, a power of two.
+  double scale() const { return scale_; }
+  /// Bound for the distance between a vertex and its float copy, scene units.
+  static constexpr double rounding = 0x1p-23;
 
  private:
   std::shared_ptr<RTCSceneTy> scene_;
   Vec3 origin_;
-  double rounding_ = 0;
+  double scale_ = 1;
 };
 
 }  // namespace evenmesh

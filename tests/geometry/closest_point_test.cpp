@@ -50,6 +50,8 @@ TEST(ClosestPoint, IsExactFarFromTheOriginAndForFarPoints) {
   const Vec3 away{1e6, -2e6, 3e5};
   expect_same_as_trying_all(translated(make_icosphere(3), away), away, 1.0);
   expect_same_as_trying_all(make_icosphere(2, 1e-3), {}, 1e3);
+  expect_same_as_trying_all(make_icosphere(2, 1e-50), {}, 1e-50);
+  expect_same_as_trying_all(make_icosphere(2, 1e50), {}, 1e50);
 }
 
 TEST(ClosestPoint, AgreesOnASoupWithDegenerateTriangles) {
@@ -71,6 +73,7 @@ TEST(ClosestPoint, StopsAtTheLimit) {
   EXPECT_TRUE(query.closest({3, 0, 0}, 2.0).found());
   EXPECT_EQ(query.closest({3, 0, 0}, 2.1).point, (Vec3{1, 0, 0}));
   EXPECT_EQ(query.closest({1, 0.25, 0.5}, 0).squared_distance, 0);
+  EXPECT_FALSE(query.closest({std::nan(""), 0, 0}).found());
 }
 
 TEST(ClosestPoint, NeedsATriangle) {
