@@ -38,7 +38,8 @@ int parse_and_act(int argc, char** argv) {
   cli::add_gallery_command(app, action);
   cli::add_render_command(app, action);
   cli::add_unavailable_commands(app, action);
-  if (argc > 1 && argv[1][0] != '-' && !app.get_subcommand_no_throw(argv[1])) {
+  const auto named = [&](const CLI::App* command) { return command->check_name(argc > 1 ? argv[1] : ""); };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty()) {
     throw InvalidInput(fmt::format("there is no command '{}'; evenmesh --help lists them", argv[1]));
   }
   try {

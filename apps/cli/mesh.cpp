@@ -23,13 +23,11 @@ void add_mesh_command(CLI::App& app, Action& action) {
       ->add_option("-e,--expression", a->input.expressions,
                    "solid where an expression in x, y, z is below 0, instead of INPUT")
       ->type_name("EXPR")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false)
       ->group(group);
   command->add_option("-D,--define", a->definitions, "value of a parameter of the expression, e.g. -D a=0.5")
       ->type_name("NAME=VALUE")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false)
       ->group(group);
   command->add_option("--entry", a->entry, "function in a GLSL file; not available in this version")
       ->type_name("NAME")

@@ -25,9 +25,8 @@ std::string angle_line(const MeshQuality& q) {
 }  // namespace
 
 std::string grouped(std::size_t number) {
-  std::string digits = std::to_string(number);
-  for (std::size_t i = digits.size(); i > 3;) digits.insert(i -= 3, ",");
-  return digits;
+  if (number < 1000) return fmt::format("{}", number);
+  return fmt::format("{},{:03}", grouped(number / 1000), number % 1000);
 }
 
 std::string topology(const MeshQuality& q) {
