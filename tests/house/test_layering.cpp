@@ -1,0 +1,148 @@
+/// Who includes whom: the folders are the pipeline, and data goes one way (docs/architecture.md).
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::set<std::string>;
+
+const fs::path root = EVENMESH_SOURCE_DIR;
+
+/// Rooms in the order of the pipeline; each sees itself and those before it.
+const std::vector<std::string> pipeline{"core", "geometry", "shape", "sample", "cvt", "connect", "refine", "pipeline"};
+
+/// Rooms beside the pipeline, and what they see besides themselves.
+const std::map<std::string, Names> beside{
+    {"measure", {"core", "geometry"}},
+    {"io", {"core", "geometry", "shape"}},
+    {"view", {"core", "geometry", "measure"}},
+};
+
+/// Public headers, and the room from which on they may be included.
+const std::map<std::string, std::string> public_headers{
+    {"error.h", "core"},      {"run.h", "core"}, {"mesh.h", "geometry"},       {"shape.h", "shape"},
+    {"measure.h", "measure"}, {"io.h", "io"},    {"mesh_shape.h", "pipeline"}, {"render.h", "view"},
+};
+
+Names visible_from(const std::string& room) {
+  if (const auto found = beside.find(room); found != beside.end()) {
+    Names names = found->second;
+    names.insert(room);
+    return names;
+  }
+  Names names;
+  for (const std::string& lower : pipeline) {
+    names.insert(lower);
+    if (lower == room) break;
+  }
+  // The loop that runs the stages also measures what came out.
+  if (room == "pipeline") names.insert("measure");
+  return names;
+}
+
+bool may_include_public(const std::string& room, const std::string& header) {
+  const auto found = public_headers.find(header);
+  if (found == public_headers.end()) return false;
+  // Reports are about the pipeline's result: they see its public header, not its room.
+  if (room == "view" && header == "mesh_shape.h") return true;
+  return visible_from(room).contains(found->second);
+}
+
+std::vector<fs::path> sources_under(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (!fs::exists(folder)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string extension = entry.path().extension();
+    if (extension == ".h" || extension == ".cpp") files.push_back(entry.path());
+  }
+  return files;
+}
+
+std::vector<std::string> includes_of(const fs::path& file) {
+  static const std::regex pattern(R"re(^\s*#\s*include\s*["<]([^">]+)[">].*)re");
+  std::vector<std::string> names;
+  std::ifstream in(file);
+  std::smatch match;
+  for (std::string line; std::getline(in, line);) {
+    if (std::regex_match(line, match, pattern)) names.push_back(match[1]);
+  }
+  return names;
+}
+
+/// "room/file.h" → "room", and "" for anything that is not ours.
+std::string room_of_include(const std::string& name) {
+  const std::string first = name.substr(0, name.find('/'));
+  return name.find('/') != std::string::npos && fs::is_directory(root / "src" / first) ? first : "";
+}
+
+TEST(Layering, RoomsSeeOnlyLowerRooms) {
+  for (const fs::path& file : sources_under(root / "src")) {
+    const std::string room = fs::relative(file, root / "src").begin()->string();
+    const bool known = beside.contains(room) || std::count(pipeline.begin(), pipeline.end(), room) > 0;
+    ASSERT_TRUE(known) << room << " is not a room of docs/architecture.md";
+    for (const std::string& name : includes_of(file)) {
+      if (name.starts_with("evenmesh/")) {
+        EXPECT_TRUE(may_include_public(room, name.substr(9))) << file << " includes " << name;
+      } else if (const std::string other = room_of_include(name); !other.empty()) {
+        EXPECT_TRUE(visible_from(room).contains(other)) << file << " includes " << name;
+      }
+      EXPECT_EQ(name.find(".."), std::string::npos) << file << " includes " << name;
+    }
+  }
+}
+
+TEST(Layering, PublicHeadersIncludeOnlyPublicHeadersAndTheStandardLibrary) {
+  for (const fs::path& file : sources_under(root / "include")) {
+    const std::string self = file.filename();
+    ASSERT_TRUE(public_headers.contains(self)) << self << " is not in the table of this test";
+    const std::string room = public_headers.at(self);
+    for (const std::string& name : includes_of(file)) {
+      if (name.starts_with("evenmesh/")) {
+        EXPECT_TRUE(may_include_public(room, name.substr(9))) << self << " includes " << name;
+      } else {
+        EXPECT_EQ(name.find_first_of("./"), std::string::npos) << self << " includes " << name;
+      }
+    }
+  }
+}
+
+TEST(Layering, TheProgramAndTheExamplesSeeOnlyPublicHeaders) {
+  for (const char* folder : {"apps", "examples"}) {
+    for (const fs::path& file : sources_under(root / folder)) {
+      for (const std::string& name : includes_of(file)) {
+        EXPECT_EQ(room_of_include(name), "") << file << " includes " << name;
+        EXPECT_EQ(name.find("src/"), std::string::npos) << file << " includes " << name;
+        if (name.starts_with("evenmesh/")) {
+          EXPECT_TRUE(public_headers.contains(name.substr(9))) << file << " includes " << name;
+        }
+      }
+    }
+  }
+}
+
+TEST(Layering, EveryHeaderIsGuardedAndNoFileIsTooLong) {
+  for (const char* folder : {"src", "include", "apps", "tests", "bench", "examples", "fuzz"}) {
+    for (const fs::path& file : sources_under(root / folder)) {
+      std::ifstream in(file);
+      std::size_t lines = 0;
+      std::string first;
+      for (std::string line; std::getline(in, line); ++lines) {
+        if (lines == 0) first = line;
+      }
+      EXPECT_LE(lines, 500u) << file;
+      if (file.extension() == ".h") EXPECT_EQ(first, "#pragma once") << file;
+    }
+  }
+}
+
+}  // namespace
