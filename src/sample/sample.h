@@ -15,8 +15,8 @@ namespace evenmesh {
 /// Based on [Raster2Mesh §4.1]; edge rules by simulation of simplicity (Edelsbrunner, Mücke 1990).
 SampleSet sample_shape(const Shape& shape, const Grid& grid, Run& run = Run::silent());
 
-/// Every other ray of `fine` in both directions across it: the samples of a grid with twice the spacing (several per edge
-/// are kept), areas times four, in blocks of that grid's bricks. Cost: O(samples).
+/// Every other ray of `fine` in both directions across it: the samples of a grid with twice the spacing (several per
+/// edge are kept), areas times four, in blocks of that grid's bricks. Cost: O(samples).
 SampleSet coarsen(const SampleSet& fine, Run& run = Run::silent());
 
 }  // namespace evenmesh

@@ -16,8 +16,8 @@ namespace evenmesh {
 /// their two other coordinates; a *grid edge* joins two neighbouring points of a ray.
 struct Grid {
   Vec3 origin;
-  double spacing = 1;                      ///< h, model units
-  std::array<std::uint32_t, 3> size{};     ///< grid points along each axis, at most 8,200
+  double spacing = 1;                   ///< h, model units
+  std::array<std::uint32_t, 3> size{};  ///< grid points along each axis, at most 8,200
 
   Vec3 point(double i, double j, double k) const { return origin + spacing * Vec3{i, j, k}; }
 };
@@ -25,14 +25,16 @@ struct Grid {
 /// Grid around `bounds` with `resolution` cells along the longest side and at least two cells of margin on every side.
 Grid make_grid(const Box& bounds, std::size_t resolution);
 
-/// Unit vector in 32 bits: octahedral map (Meyer et al., On floating-point normal vectors, EGSR 2010), error below 5e-5.
+/// Unit vector in 32 bits: octahedral map (Meyer et al., On floating-point normal vectors, EGSR 2010), error below
+/// 7e-5.
 struct PackedNormal {
   std::uint32_t bits = 0;
 };
 PackedNormal pack_normal(const Vec3& unit);
 Vec3 unpack_normal(PackedNormal packed);
 
-/// Where a sample lies in its block: axis of the grid edge, cell of its lower end within the brick, which end is inside.
+/// Where a sample lies in its block: axis of the grid edge, cell of its lower end within the brick, which end is
+/// inside.
 struct EdgeCode {
   std::uint16_t bits = 0;
   EdgeCode() = default;
@@ -49,8 +51,8 @@ struct EdgeCode {
 inline constexpr unsigned brick_size = 8;
 
 struct SampleBlock {
-  std::uint32_t begin = 0, end = 0;        ///< range of samples
-  std::array<std::uint16_t, 3> brick{};    ///< brick coordinates: grid point / brick_size
+  std::uint32_t begin = 0, end = 0;      ///< range of samples
+  std::array<std::uint16_t, 3> brick{};  ///< brick coordinates: grid point / brick_size
 };
 
 /// Crossings of the surface with the edges of a grid, at most one per edge; structure of arrays.
@@ -59,15 +61,15 @@ struct SampleBlock {
 struct SampleSet {
   Grid grid;
   std::vector<SampleBlock> blocks;
-  std::vector<float> x, y, z;              ///< position relative to block_center(), model units
-  std::vector<float> area;                 ///< piece of surface a sample stands for: h²/(|nx|+|ny|+|nz|)
-  std::vector<PackedNormal> normal;        ///< unit, outward
-  std::vector<EdgeCode> edge;              ///< empty in coarsened sets
-  std::vector<std::uint32_t> source;       ///< triangle of the input mesh; empty for fields
+  std::vector<float> x, y, z;         ///< position relative to block_center(), model units
+  std::vector<float> area;            ///< piece of surface a sample stands for: h²/(|nx|+|ny|+|nz|)
+  std::vector<PackedNormal> normal;   ///< unit, outward
+  std::vector<EdgeCode> edge;         ///< empty in coarsened sets
+  std::vector<std::uint32_t> source;  ///< triangle of the input mesh; empty for fields
   double total_area = 0;
-  std::size_t disagreements = 0;           ///< grid points whose inside differed between directions, settled by vote
-  std::size_t unresolved = 0;              ///< crossings left out because one grid edge held several (features thinner than h)
-  bool cut_by_bounds = false;              ///< the solid reached the bounds and was closed there
+  std::size_t disagreements = 0;  ///< grid points whose inside differed between directions, settled by vote
+  std::size_t unresolved = 0;     ///< crossings left out because one grid edge held several (features thinner than h)
+  bool cut_by_bounds = false;     ///< the solid reached the bounds and was closed there
 
   std::size_t size() const { return x.size(); }
   Vec3 block_center(const SampleBlock& b) const {

@@ -1,0 +1,116 @@
+#include <cmath>
+
+#include "sample/blocks.h"
+#include "sample/sample.h"
+
+namespace evenmesh {
+namespace {
+
+// Whether a sample lies on a ray that the coarser grid has too: its two coordinates across the ray are even.
+class Keeper {
+ public:
+  explicit Keeper(const SampleSet& set) : set_(set), cells_per_unit_(static_cast<float>(1.0 / set.grid.spacing)) {}
+
+  bool operator()(std::uint32_t i) const {
+    if (!set_.edge.empty()) {
+      const EdgeCode e = set_.edge[i];
+      const unsigned odd = (e.i() & 1u) | (e.j() & 1u) << 1 | (e.k() & 1u) << 2;
+      return (odd & ~(1u << e.axis())) == 0;
+    }
+    // A set that was coarsened before has no codes: the ray's direction is that in which the sample is off the grid.
+    const float at[3] = {set_.x[i] * cells_per_unit_, set_.y[i] * cells_per_unit_, set_.z[i] * cells_per_unit_};
+    int axis = 0;
+    bool odd[3];
+    float farthest = -1;
+    for (int a = 0; a < 3; ++a) {
+      const float nearest = std::floor(at[a] + 0.5f), off = std::abs(at[a] - nearest);
+      odd[a] = (static_cast<int>(nearest) & 1) != 0;
+      if (off > farthest) axis = a, farthest = off;
+    }
+    odd[axis] = false;
+    return !odd[0] && !odd[1] && !odd[2];
+  }
+
+ private:
+  const SampleSet& set_;
+  float cells_per_unit_;
+};
+
+struct CoarseBlock {
+  std::uint32_t first_child, children;
+};
+
+// Fine blocks that share a coarse one follow each other in Morton order.
+std::vector<CoarseBlock> group_blocks(const SampleSet& fine) {
+  std::vector<CoarseBlock> groups;
+  const auto parent = [&](std::size_t b, std::size_t a) { return fine.blocks[b].brick[a] / 2; };
+  for (std::uint32_t b = 0; b < fine.blocks.size(); ++b) {
+    const bool same = b > 0 && parent(b, 0) == parent(b - 1, 0) && parent(b, 1) == parent(b - 1, 1) &&
+                      parent(b, 2) == parent(b - 1, 2);
+    if (same)
+      ++groups.back().children;
+    else
+      groups.push_back({b, 1});
+  }
+  return groups;
+}
+
+void copy_block(const SampleSet& fine, const SampleBlock& from, const Keeper& keep, SampleSet& coarse,
+                std::uint32_t& out) {
+  const float h = static_cast<float>(fine.grid.spacing);
+  float shift[3];
+  for (std::size_t a = 0; a < 3; ++a) shift[a] = (from.brick[a] % 2 ? 0.5f : -0.5f) * brick_size * h;
+  for (std::uint32_t i = from.begin; i < from.end; ++i) {
+    if (!keep(i)) continue;
+    coarse.x[out] = fine.x[i] + shift[0], coarse.y[out] = fine.y[i] + shift[1], coarse.z[out] = fine.z[i] + shift[2];
+    coarse.area[out] = 4.0f * fine.area[i];
+    coarse.normal[out] = fine.normal[i];
+    if (!fine.source.empty()) coarse.source[out] = fine.source[i];
+    ++out;
+  }
+}
+
+}  // namespace
+
+SampleSet coarsen(const SampleSet& fine, Run& run) {
+  return with_threads(run, [&] {
+    SampleSet coarse;
+    coarse.grid = {fine.grid.origin, 2 * fine.grid.spacing, fine.grid.size};
+    for (std::uint32_t& n : coarse.grid.size) n = n / 2 + 1;
+    coarse.disagreements = fine.disagreements, coarse.unresolved = fine.unresolved;
+    coarse.cut_by_bounds = fine.cut_by_bounds;
+    const Keeper keep(fine);
+    const std::vector<CoarseBlock> groups = group_blocks(fine);
+    std::vector<std::uint32_t> kept(groups.size());
+    parallel_for(run, groups.size(), 32, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t g = begin; g < end; ++g) {
+        const SampleBlock *first = &fine.blocks[groups[g].first_child], *last = first + groups[g].children - 1;
+        for (std::uint32_t i = first->begin; i < last->end; ++i) kept[g] += keep(i) ? 1 : 0;
+      }
+    });
+    std::vector<std::uint32_t> child;
+    std::uint32_t sum = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (kept[g] == 0) continue;
+      const SampleBlock& first = fine.blocks[groups[g].first_child];
+      SampleBlock block{sum, sum + kept[g], first.brick};
+      for (std::uint16_t& b : block.brick) b = static_cast<std::uint16_t>(b / 2);
+      coarse.blocks.push_back(block);
+      child.push_back(static_cast<std::uint32_t>(g));
+      sum += kept[g];
+    }
+    resize_samples(coarse, sum, false, !fine.source.empty(), run);
+    parallel_for(run, coarse.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        const CoarseBlock& group = groups[child[b]];
+        std::uint32_t out = coarse.blocks[b].begin;
+        for (std::uint32_t c = 0; c < group.children; ++c)
+          copy_block(fine, fine.blocks[group.first_child + c], keep, coarse, out);
+      }
+    });
+    sum_area(coarse, run);
+    return coarse;
+  });
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,82 @@
+#include "sample/rays.h"
+
+#include <algorithm>
+
+namespace evenmesh {
+namespace {
+
+bool before(const RayHit& a, const RayHit& b) {
+  if (a.cell != b.cell) return a.cell < b.cell;
+  if (a.t != b.t) return a.t < b.t;
+  return a.source < b.source;
+}
+
+// Hit that finds no partner of the opposite step when pairs are matched like brackets: the one that a hole in the
+// surface left alone. There is one, since the steps do not sum to 0.
+std::size_t unmatched(std::span<const RayHit> hits) {
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (!open.empty() && hits[open.back()].step != hits[i].step)
+      open.pop_back();
+    else
+      open.push_back(i);
+  }
+  return open.front();
+}
+
+// Makes the steps sum to 0; returns the hits that remain.
+std::span<RayHit> close_ray(std::span<RayHit> hits) {
+  if (hits.size() % 2 == 1) {
+    const std::size_t lone = unmatched(hits);
+    std::copy(hits.begin() + static_cast<std::ptrdiff_t>(lone) + 1, hits.end(),
+              hits.begin() + static_cast<std::ptrdiff_t>(lone));
+    hits = hits.first(hits.size() - 1);
+    int sum = 0;
+    for (const RayHit& hit : hits) sum += hit.step;
+    if (sum == 0) return hits;
+  }
+  std::int8_t step = -1;
+  for (RayHit& hit : hits) hit.step = step = static_cast<std::int8_t>(-step);
+  return hits;
+}
+
+}  // namespace
+
+void sort_hits(std::span<RayHit> hits) {
+  if (hits.size() > 24) {
+    std::stable_sort(hits.begin(), hits.end(), before);
+    return;
+  }
+  for (std::size_t i = 1; i < hits.size(); ++i) {
+    if (!before(hits[i], hits[i - 1])) continue;
+    const RayHit hit = hits[i];
+    std::size_t j = i;
+    for (; j > 0 && before(hit, hits[j - 1]); --j) hits[j] = hits[j - 1];
+    hits[j] = hit;
+  }
+}
+
+void resolve_ray(std::span<RayHit> hits, std::vector<DexelCrossing>& out, RayCounts& counts) {
+  int sum = 0;
+  for (const RayHit& hit : hits) sum += hit.step;
+  if (sum != 0) hits = close_ray(hits);
+  int winding = 0;
+  for (std::size_t i = 0; i < hits.size();) {
+    const bool inside = winding != 0;
+    const std::uint16_t cell = hits[i].cell;
+    std::size_t changes = 0, last = i;
+    for (; i < hits.size() && hits[i].cell == cell; ++i) {
+      const bool was_inside = winding != 0;
+      winding += hits[i].step;
+      if ((winding != 0) != was_inside) ++changes, last = i;
+    }
+    // The change that counts is the last one: it is next to the upper grid point's side.
+    const bool changed = (winding != 0) != inside;
+    counts.unresolved += changes - (changed ? 1 : 0);
+    if (!changed) continue;
+    out.push_back({hits[last].source, hits[last].t, cell, !inside, hits[last].made});
+    counts.capped = counts.capped || hits[last].made;
+  }
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,35 @@
+#pragma once
+/// From hits along one ray to the runs of the solid.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sample/tri_dexel.h"
+
+namespace evenmesh {
+
+/// Where a ray meets a triangle.
+struct RayHit {
+  std::uint32_t source = 0;
+  float t = 0;
+  std::uint16_t cell = 0;
+  std::int8_t step = 0;  ///< change of the winding number along the ray, ±1
+  bool made = false;     ///< moved onto the bounds
+};
+
+/// What resolving rays had to do.
+struct RayCounts {
+  std::size_t unresolved = 0;  ///< crossings left out because one cell held several
+  bool capped = false;         ///< a crossing on the bounds remained
+};
+
+/// Sorts the hits along the ray. Cost: linear for the few hits of a usual ray.
+void sort_hits(std::span<RayHit> hits);
+
+/// Appends the crossings at which inside changes, at most one per cell, to `out`; hits must be sorted.
+/// Rays whose winding number does not return to 0 are read by parity, less an unmatched hit.
+void resolve_ray(std::span<RayHit> hits, std::vector<DexelCrossing>& out, RayCounts& counts);
+
+}  // namespace evenmesh
