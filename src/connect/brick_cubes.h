@@ -1,0 +1,73 @@
+#pragma once
+/// Walks the grid cubes that a surface passes through, brick by brick, and hands out their loops of crossings.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "connect/cube_table.h"
+#include "sample/sample_set.h"
+
+namespace evenmesh {
+
+/// A brick of grid cubes and the blocks that hold crossings on its cubes' edges: [dx + 2·dy + 4·dz], −1 = none.
+struct CubeBrick {
+  std::array<std::int64_t, 8> block{};
+};
+
+/// All bricks with a crossed cube, in a fixed order.
+std::vector<CubeBrick> cube_bricks(const SampleSet& samples);
+
+/// Finds the loops of one brick's cubes; reusable, one per thread.
+class CubeWalker {
+ public:
+  explicit CubeWalker(const SampleSet& samples) : samples_(samples) { clear_all(); }
+
+  /// Calls visit(const std::uint32_t* loop, int length): sample indices in cyclic order, counter-clockwise from outside.
+  template <typename Visit>
+  void walk(const CubeBrick& brick, const Visit& visit) {
+    load(brick);
+    const auto& loops = cube_loops();
+    for (int k = 0; k < 8; ++k)
+      for (int j = 0; j < 8; ++j) {
+        const Row row = this->row(j, k);
+        for (unsigned active = row.active; active != 0; active &= active - 1) {
+          const int i = __builtin_ctz(active);
+          const CubeLoops& cube = loops[inside_corners(row, i, j, k)];
+          std::uint32_t loop[12];
+          for (int l = 0; l < cube.count; ++l) {
+            int length = 0;
+            for (int e = cube.start[l]; e < cube.start[l + 1]; ++e) loop[length++] = sample_on(cube.edge[e], i, j, k);
+            visit(static_cast<const std::uint32_t*>(loop), length);
+          }
+        }
+      }
+    unload();
+  }
+
+ private:
+  static constexpr int side = brick_size + 1;
+  struct Row {
+    std::array<std::uint16_t, 12> bits;  ///< per cube edge: crossings of the row's cubes, bit i
+    unsigned active;
+  };
+
+  static int at(int axis, int i, int j, int k) { return ((axis * side + k) * side + j) * side + i; }
+  Row row(int j, int k) const;
+  unsigned inside_corners(const Row& row, int i, int j, int k) const;
+  std::uint32_t sample_on(int edge, int i, int j, int k) const {
+    const int axis = edge >> 2, a = edge & 1, b = edge >> 1 & 1;
+    return axis == 0   ? sample_[at(0, i, j + a, k + b)]
+           : axis == 1 ? sample_[at(1, i + a, j, k + b)]
+                       : sample_[at(2, i + a, j + b, k)];
+  }
+  void clear_all();
+  void load(const CubeBrick& brick);
+  void unload();
+
+  const SampleSet& samples_;
+  std::array<std::uint32_t, 3 * side * side * side> sample_{};
+  std::array<std::uint16_t, 3 * side * side> crossed_{};  ///< [axis][k][j], bit i
+};
+
+}  // namespace evenmesh

@@ -1,0 +1,332 @@
+#include "connect/label_complex.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "connect/brick_cubes.h"
+#include "connect/dual_polygons.h"
+
+namespace evenmesh {
+namespace {
+
+using Index = std::uint32_t;
+constexpr double tiny_piece = 0.1;  ///< of a mean cell
+
+Index find_root(std::vector<Index>& parent, Index i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+/// The smaller index becomes the root, so that roots do not depend on the order of unions.
+void unite(std::vector<Index>& parent, Index a, Index b) {
+  a = find_root(parent, a), b = find_root(parent, b);
+  if (a < b)
+    parent[b] = a;
+  else
+    parent[a] = b;
+}
+
+/// What one pass over all cubes collects.
+class Complex {
+ public:
+  Complex(const SampleSet& samples, std::vector<Index>& labels, std::size_t label_count, Run& run)
+      : samples_(samples),
+        labels_(labels),
+        run_(run),
+        bricks_(cube_bricks(samples)),
+        parent_(samples.size()),
+        polygons_(bricks_.size()),
+        cross_links_(bricks_.size()),
+        euler_(label_count) {}
+
+  void link() {
+    parallel_for(run_, samples_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) parent_[i] = static_cast<Index>(i);
+    });
+    tbb::enumerable_thread_specific<Tally> tallies([&] { return Tally(samples_, euler_.size()); });
+    parallel_for(run_, bricks_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      Tally& tally = tallies.local();
+      for (std::size_t b = begin; b < end; ++b) link_brick(b, tally);
+    });
+    for (const Tally& tally : tallies) {
+      for (std::size_t l = 0; l < euler_.size(); ++l) euler_[l] += tally.twice_euler[l];
+      loops_ += tally.loops;
+    }
+    join_bricks();
+  }
+
+  /// The polygons of these bricks again, after some labels changed.
+  void refresh_polygons(const std::vector<char>& brick_dirty) {
+    tbb::enumerable_thread_specific<CubeWalker> walkers([&] { return CubeWalker(samples_); });
+    parallel_for(run_, bricks_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        if (!brick_dirty[b]) continue;
+        polygons_[b].clear();
+        walkers.local().walk(bricks_[b], [&](const Index* loop, int n) { add_polygon(b, loop, n); });
+      }
+    });
+  }
+
+  std::vector<Index>& parent() { return parent_; }
+  const std::vector<CubeBrick>& bricks() const { return bricks_; }
+  const std::vector<std::vector<Index>>& polygons() const { return polygons_; }
+  /// Twice the Euler number (with compact support) of the interior of a label's quads; 2 per disk.
+  const std::vector<std::int64_t>& twice_euler() const { return euler_; }
+  /// χ of the quad surface: corners − links + quads, and there are two links for every quad.
+  std::int64_t surface_euler() const { return loops_ - static_cast<std::int64_t>(samples_.size()); }
+
+ private:
+  struct Tally {
+    CubeWalker walker;
+    std::vector<std::int32_t> twice_euler;
+    std::int64_t loops = 0;
+    Tally(const SampleSet& samples, std::size_t labels) : walker(samples), twice_euler(labels, 0) {}
+  };
+
+  void link_brick(std::size_t b, Tally& tally) {
+    const std::int64_t own_block = bricks_[b].block[0];
+    const Index own_begin = own_block < 0 ? 1 : samples_.blocks[own_block].begin;
+    const Index own_end = own_block < 0 ? 0 : samples_.blocks[own_block].end;
+    const auto own = [&](Index s) { return s >= own_begin && s < own_end; };
+    for (Index s = own_begin; s < own_end; ++s) tally.twice_euler[labels_[s]] += 2;
+    auto& cross = cross_links_[b];
+    tally.walker.walk(bricks_[b], [&](const Index* loop, int n) {
+      ++tally.loops;
+      bool uniform = true;
+      for (int i = 0; i < n; ++i) {
+        const Index s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
+        if (labels_[s] != labels_[t]) {
+          uniform = false;
+          continue;
+        }
+        --tally.twice_euler[labels_[s]];  // every link is met twice, from the cubes on both sides of the face
+        if (own(s) && own(t))
+          unite(parent_, s, t);
+        else if (cross.empty() || cross.back() != std::pair{s, t})
+          cross.push_back({s, t});
+      }
+      if (uniform)
+        tally.twice_euler[labels_[loop[0]]] += 2;
+      else
+        add_polygon(b, loop, n);
+    });
+  }
+
+  /// Stores the loop as (count, samples): one sample for each run of equal labels, when there are three runs or more.
+  void add_polygon(std::size_t b, const Index* loop, int n) {
+    Index run[12];
+    Index runs = 0;
+    for (int i = 0; i < n; ++i)
+      if (labels_[loop[i]] != labels_[loop[i == 0 ? n - 1 : i - 1]]) run[runs++] = loop[i];
+    if (runs < 3) return;
+    auto& polygons = polygons_[b];
+    polygons.push_back(runs);
+    polygons.insert(polygons.end(), run, run + runs);
+  }
+
+  /// Unites across bricks: roots are settled in parallel, the few distinct pairs of them serially.
+  void join_bricks() {
+    parallel_for(run_, samples_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Index root = static_cast<Index>(i);
+        while (parent_[root] != root) root = parent_[root];
+        parent_[i] = root;  // roots stay roots: no other thread's walk is misled
+      }
+    });
+    parallel_for(run_, bricks_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        auto& cross = cross_links_[b];
+        for (auto& [s, t] : cross) {
+          s = parent_[s], t = parent_[t];
+          if (s > t) std::swap(s, t);
+        }
+        std::sort(cross.begin(), cross.end());
+        cross.erase(std::unique(cross.begin(), cross.end()), cross.end());
+      }
+    });
+    for (const auto& cross : cross_links_)
+      for (const auto& [s, t] : cross) unite(parent_, s, t);
+    cross_links_.clear();
+  }
+
+  const SampleSet& samples_;
+  std::vector<Index>& labels_;
+  Run& run_;
+  std::vector<CubeBrick> bricks_;
+  std::vector<Index> parent_;
+  std::vector<std::vector<Index>> polygons_;
+  std::vector<std::vector<std::pair<Index, Index>>> cross_links_;
+  std::vector<std::int64_t> euler_;
+  std::int64_t loops_ = 0;
+};
+
+struct Piece {
+  Index root = 0, label = 0;
+  double area = 0;
+  Vec3 moment;
+};
+
+/// All pieces of the labels that have several, by label, the largest first.
+std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels, std::vector<Index>& parent,
+                                          std::size_t label_count, std::vector<Index>& piece_count) {
+  piece_count.assign(label_count, 0);
+  for (std::size_t i = 0; i < parent.size(); ++i)
+    if (parent[i] == i) ++piece_count[labels[i]];
+  std::vector<Piece> pieces;
+  std::vector<std::pair<Index, Index>> piece_of_root;  // (root, index into pieces), ascending
+  for (std::size_t i = 0; i < parent.size(); ++i)
+    if (parent[i] == i && piece_count[labels[i]] > 1) {
+      piece_of_root.push_back({static_cast<Index>(i), static_cast<Index>(pieces.size())});
+      pieces.push_back({static_cast<Index>(i), labels[i], 0, {}});
+    }
+  if (pieces.empty()) return pieces;
+  for (const SampleBlock& block : samples.blocks) {
+    const Vec3 center = samples.block_center(block);
+    for (Index i = block.begin; i < block.end; ++i) {
+      if (piece_count[labels[i]] <= 1) continue;
+      const Index root = find_root(parent, i);
+      Piece& piece = pieces[std::lower_bound(piece_of_root.begin(), piece_of_root.end(), std::pair{root, Index{0}})->second];
+      piece.area += samples.area[i];
+      piece.moment += double(samples.area[i]) * (center + Vec3{samples.x[i], samples.y[i], samples.z[i]});
+    }
+  }
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
+    return a.label != b.label ? a.label < b.label : a.area != b.area ? a.area > b.area : a.root < b.root;
+  });
+  return pieces;
+}
+
+/// Gives every label's largest piece its label, other pieces a new one, tiny pieces that of the neighbour with the longest border.
+class Splitter {
+ public:
+  Splitter(const SampleSet& samples, std::vector<Index>& labels, Complex& complex, LabelComplex& result)
+      : samples_(samples), labels_(labels), complex_(complex), result_(result) {}
+
+  void split(std::size_t given_labels, double mean_cell) {
+    std::vector<Index> piece_count;
+    pieces_ = pieces_of_split_labels(samples_, labels_, complex_.parent(), given_labels, piece_count);
+    result_.labels = given_labels;
+    if (pieces_.empty()) return;
+    std::vector<std::pair<Index, Index>> label_of_root, tiny;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      const Piece& piece = pieces_[p];
+      const bool largest = p == 0 || pieces_[p - 1].label != piece.label;
+      if (largest) continue;
+      if (piece.area < tiny_piece * mean_cell) {
+        tiny.push_back({piece.root, static_cast<Index>(p)});
+        continue;
+      }
+      give_new_label(piece, label_of_root);
+    }
+    adopt_tiny(tiny, label_of_root);
+    relabel(piece_count, label_of_root);
+  }
+
+ private:
+  void give_new_label(const Piece& piece, std::vector<std::pair<Index, Index>>& label_of_root) {
+    const auto label = static_cast<Index>(result_.labels++);
+    label_of_root.push_back({piece.root, label});
+    result_.pieces.push_back({piece.label, label, piece.area, piece.moment / piece.area});
+  }
+
+  /// Counts the links of tiny pieces to other roots and hands each over to the most linked one.
+  void adopt_tiny(std::vector<std::pair<Index, Index>>& tiny, std::vector<std::pair<Index, Index>>& label_of_root) {
+    if (tiny.empty()) return;
+    std::sort(tiny.begin(), tiny.end());
+    std::vector<char> block_tiny(samples_.blocks.size(), 0);
+    auto& parent = complex_.parent();
+    const auto is_tiny = [&](Index root) {
+      const auto it = std::lower_bound(tiny.begin(), tiny.end(), std::pair{root, Index{0}});
+      return it != tiny.end() && it->first == root;
+    };
+    for (std::size_t b = 0; b < samples_.blocks.size(); ++b)
+      for (Index i = samples_.blocks[b].begin; i < samples_.blocks[b].end && !block_tiny[b]; ++i)
+        block_tiny[b] = is_tiny(find_root(parent, i));
+    std::vector<char> brick_dirty(complex_.bricks().size(), 0);
+    std::vector<std::pair<Index, Index>> links;  // (tiny root, other root)
+    CubeWalker walker(samples_);
+    for (std::size_t b = 0; b < brick_dirty.size(); ++b) {
+      for (const std::int64_t block : complex_.bricks()[b].block) brick_dirty[b] |= block >= 0 && block_tiny[block];
+      if (!brick_dirty[b]) continue;
+      walker.walk(complex_.bricks()[b], [&](const Index* loop, int n) {
+        for (int i = 0; i < n; ++i) {
+          const Index r = find_root(parent, loop[i]), s = find_root(parent, loop[(i + 1) % n]);
+          if (r == s) continue;
+          if (is_tiny(r) && !is_tiny(s)) links.push_back({r, s});
+          if (is_tiny(s) && !is_tiny(r)) links.push_back({s, r});
+        }
+      });
+    }
+    std::sort(links.begin(), links.end());
+    std::sort(label_of_root.begin(), label_of_root.end());
+    const auto settled = label_of_root;
+    const auto label_of = [&](Index root) {
+      const auto it = std::lower_bound(settled.begin(), settled.end(), std::pair{root, Index{0}});
+      return it != settled.end() && it->first == root ? it->second : labels_[root];
+    };
+    for (const auto& [root, p] : tiny) {
+      const auto first = std::lower_bound(links.begin(), links.end(), std::pair{root, Index{0}});
+      std::ptrdiff_t best = 0;
+      Index best_root = 0;
+      for (auto it = first; it != links.end() && it->first == root;) {
+        const auto next = std::upper_bound(it, links.end(), *it);
+        if (next - it > best) best = next - it, best_root = it->second;
+        it = next;
+      }
+      if (best > 0)
+        label_of_root.push_back({root, label_of(best_root)});
+      else
+        give_new_label(pieces_[p], label_of_root);  // nothing around it: a speck of surface of its own, or among specks
+    }
+    dirty_ = std::move(brick_dirty);
+  }
+
+  void relabel(const std::vector<Index>& piece_count, std::vector<std::pair<Index, Index>>& label_of_root) {
+    std::sort(label_of_root.begin(), label_of_root.end());
+    auto& parent = complex_.parent();
+    for (std::size_t i = 0; i < labels_.size(); ++i) {
+      if (piece_count[labels_[i]] <= 1) continue;
+      const Index root = find_root(parent, static_cast<Index>(i));
+      const auto it = std::lower_bound(label_of_root.begin(), label_of_root.end(), std::pair{root, Index{0}});
+      if (it != label_of_root.end() && it->first == root) new_labels_.push_back({static_cast<Index>(i), it->second});
+    }
+    for (const auto& [i, label] : new_labels_) labels_[i] = label;
+    if (!dirty_.empty()) complex_.refresh_polygons(dirty_);
+  }
+
+  const SampleSet& samples_;
+  std::vector<Index>& labels_;
+  Complex& complex_;
+  LabelComplex& result_;
+  std::vector<Piece> pieces_;
+  std::vector<char> dirty_;
+  std::vector<std::pair<Index, Index>> new_labels_;
+};
+
+}  // namespace
+
+LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds, Run& run) {
+  LabelComplex result;
+  Complex complex(samples, labels, seeds.size(), run);
+  complex.link();
+  result.surface_euler = complex.surface_euler();
+  std::vector<Index> piece_count(seeds.size(), 0);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (complex.parent()[i] == i) ++piece_count[labels[i]];
+
+  Splitter(samples, labels, complex, result).split(seeds.size(), samples.total_area / static_cast<double>(seeds.size()));
+
+  std::vector<Vec3> positions(seeds.begin(), seeds.end());
+  for (const CellPiece& piece : result.pieces) positions.push_back(piece.centroid);
+  const DualMesh dual = triangulate_polygons(complex.polygons(), labels, positions);
+  result.triangles = dual.triangles;
+  result.defects = dual.defects;
+  for (std::size_t l = 0; l < seeds.size(); ++l)
+    if (complex.twice_euler()[l] != 2 * static_cast<std::int64_t>(piece_count[l])) result.defects.push_back(static_cast<Index>(l));
+  std::sort(result.defects.begin(), result.defects.end());
+  result.defects.erase(std::unique(result.defects.begin(), result.defects.end()), result.defects.end());
+  return result;
+}
+
+}  // namespace evenmesh

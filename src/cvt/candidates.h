@@ -1,0 +1,47 @@
+#pragma once
+/// For every block of samples, the seeds that can be nearest to one of them.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/parallel.h"
+#include "sample/sample_set.h"
+
+namespace evenmesh {
+
+/// Box of a block's samples relative to its centre.
+struct BlockBox {
+  float center[3], half[3];
+};
+std::vector<BlockBox> block_boxes(const SampleSet& samples, const Run& run);
+
+/// Candidate lists, kept while seeds move little.
+///
+/// A list stays complete as long as no seed has moved by more than the margin it was made with, so most evaluations of an
+/// optimization pay nothing for the search.
+class CandidateLists {
+ public:
+  CandidateLists(const SampleSet& samples, const Run& run);
+
+  /// Makes the lists valid for `seeds`. @param margin  how far seeds may move before the lists are made again, model units
+  void update(std::span<const Vec3> seeds, double margin, const Run& run);
+
+  /// Seeds of block b in ascending order, never empty; `nearest_two` are guaranteed to be among them.
+  std::span<const std::uint32_t> of_block(std::size_t b) const {
+    return {lists_[b / chunk].data() + offsets_[b], counts_[b]};
+  }
+  std::size_t largest() const { return largest_; }
+
+ private:
+  static constexpr std::size_t chunk = 64;  ///< blocks per list storage, the unit of parallel work
+  const SampleSet& samples_;
+  std::vector<BlockBox> boxes_;
+  std::vector<std::vector<std::uint32_t>> lists_;
+  std::vector<std::uint32_t> offsets_, counts_;
+  std::vector<Vec3> seeds_at_build_;
+  double margin_ = -1;
+  std::size_t largest_ = 0;
+};
+
+}  // namespace evenmesh

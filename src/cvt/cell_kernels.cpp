@@ -1,0 +1,184 @@
+// No fused multiply-add and eight lanes wherever there are that many: the same bits on AVX2 and on AVX-512.
+#include "cvt/cell_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cvt/cell_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace evenmesh {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, 8>;
+using V = hn::Vec<D>;
+
+struct Nearest2 {
+  V first, second;                      // index in the candidate list, as a float
+  V distance_first, distance_second;    // |x − s|² − |x|²
+};
+
+/// Two smallest of |s|² − 2 x·s over the candidates; strict comparisons keep the first on ties.
+HWY_INLINE Nearest2 nearest_two(D d, const BlockView& b, V x, V y, V z) {
+  const V far = hn::Set(d, 1e30f);
+  Nearest2 n{hn::Zero(d), hn::Zero(d), far, far};
+  for (std::size_t c = 0; c < b.seeds; ++c) {
+    const float sx = b.seed_x[c], sy = b.seed_y[c], sz = b.seed_z[c];
+    const V g = hn::Sub(hn::Set(d, sx * sx + sy * sy + sz * sz),
+                        hn::Add(hn::Add(hn::Mul(x, hn::Set(d, 2 * sx)), hn::Mul(y, hn::Set(d, 2 * sy))),
+                                hn::Mul(z, hn::Set(d, 2 * sz))));
+    const V index = hn::Set(d, static_cast<float>(c));
+    const auto nearer = hn::Lt(g, n.distance_first);
+    const auto second = hn::Lt(g, n.distance_second);
+    n.second = hn::IfThenElse(nearer, n.first, hn::IfThenElse(second, index, n.second));
+    n.distance_second = hn::Min(n.distance_second, hn::Max(g, n.distance_first));
+    n.first = hn::IfThenElse(nearer, index, n.first);
+    n.distance_first = hn::Min(n.distance_first, g);
+  }
+  return n;
+}
+
+/// Sum of the lanes in one fixed order.
+HWY_INLINE float sum_lanes(D d, V v) {
+  HWY_ALIGN float lane[8] = {};
+  hn::Store(v, d, lane);
+  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+}
+
+struct Loaded {
+  V x, y, z, w;
+};
+/// Samples i…; lanes behind the block's end get weight and coordinates zero.
+HWY_INLINE Loaded load(D d, const BlockView& b, std::size_t i) {
+  const std::size_t left = b.samples - i;
+  if (left >= hn::Lanes(d)) return {hn::LoadU(d, b.x + i), hn::LoadU(d, b.y + i), hn::LoadU(d, b.z + i), hn::LoadU(d, b.area + i)};
+  const auto mask = hn::FirstN(d, left);
+  return {hn::MaskedLoad(mask, d, b.x + i), hn::MaskedLoad(mask, d, b.y + i), hn::MaskedLoad(mask, d, b.z + i),
+          hn::MaskedLoad(mask, d, b.area + i)};
+}
+
+double EvaluateBlock(const BlockView& b, Footprint footprint, const BlockScratch& scratch, const BlockSums& sums) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  float* const* t = scratch.array;
+  V energy = hn::Zero(d);
+  // First pass: the two nearest seeds of each sample, and what each of them gets of its footprint. The profile of a
+  // footprint across the bisector is 3/(4R)·(1 − t²/R²), the projection of an isotropic density: F and its gradient agree.
+  for (std::size_t i = 0; i < b.samples; i += lanes) {
+    const Loaded s = load(d, b, i);
+    const Nearest2 n = nearest_two(d, b, s.x, s.y, s.z);
+    const auto to_int = hn::RebindToSigned<D>();
+    const auto first = hn::ConvertTo(to_int, n.first), second = hn::ConvertTo(to_int, n.second);
+    const V dx = hn::Sub(hn::GatherIndex(d, b.seed_x, second), hn::GatherIndex(d, b.seed_x, first));
+    const V dy = hn::Sub(hn::GatherIndex(d, b.seed_y, second), hn::GatherIndex(d, b.seed_y, first));
+    const V dz = hn::Sub(hn::GatherIndex(d, b.seed_z, second), hn::GatherIndex(d, b.seed_z, first));
+    const V length2 = hn::Max(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), hn::Set(d, 1e-30f));
+    // q = R / |s2 − s1|, u = (distance to the bisector) / R
+    const V q = hn::Max(hn::Mul(hn::Sqrt(hn::Div(s.w, length2)), hn::Set(d, footprint.radius)), hn::Set(d, 1e-30f));
+    const V u = hn::Min(hn::Div(hn::Mul(hn::Set(d, 0.5f), hn::Sub(n.distance_second, n.distance_first)), hn::Mul(length2, q)),
+                        hn::Set(d, 1.0f));
+    const V u2 = hn::Mul(u, u);
+    const V rest = hn::Sub(hn::Set(d, 1.0f), u2);
+    const V share = hn::Mul(hn::Set(d, 0.25f), hn::Add(hn::Sub(hn::Set(d, 2.0f), hn::Mul(hn::Set(d, 3.0f), u)), hn::Mul(u, u2)));
+    const V moment = hn::Mul(hn::Set(d, 0.1875f), hn::Mul(rest, rest));  // of the part beyond the bisector, in units of R
+    const V w2 = hn::Mul(s.w, share), w1 = hn::Sub(s.w, w2);
+    const V shift = hn::Mul(s.w, hn::Mul(moment, q));
+    const V x2 = hn::Add(hn::Mul(s.x, s.x), hn::Add(hn::Mul(s.y, s.y), hn::Mul(s.z, s.z)));
+    const V gain = hn::Mul(hn::Mul(hn::Set(d, 2.0f), hn::Mul(length2, q)), hn::Sub(moment, hn::Mul(u, share)));
+    energy = hn::Add(energy, hn::Mul(s.w, hn::Sub(hn::Add(n.distance_first, x2), gain)));
+    hn::Store(n.first, d, t[0] + i);
+    hn::Store(n.second, d, t[1] + i);
+    hn::Store(w1, d, t[2] + i);
+    hn::Store(w2, d, t[3] + i);
+    hn::Store(hn::Sub(hn::Mul(w1, s.x), hn::Mul(shift, dx)), d, t[4] + i);
+    hn::Store(hn::Sub(hn::Mul(w1, s.y), hn::Mul(shift, dy)), d, t[5] + i);
+    hn::Store(hn::Sub(hn::Mul(w1, s.z), hn::Mul(shift, dz)), d, t[6] + i);
+    hn::Store(hn::Add(hn::Mul(w2, s.x), hn::Mul(shift, dx)), d, t[7] + i);
+    hn::Store(hn::Add(hn::Mul(w2, s.y), hn::Mul(shift, dy)), d, t[8] + i);
+    hn::Store(hn::Add(hn::Mul(w2, s.z), hn::Mul(shift, dz)), d, t[9] + i);
+  }
+  // Second pass: sums per candidate, without scattering.
+  for (std::size_t c = 0; c < b.seeds; ++c) {
+    const V index = hn::Set(d, static_cast<float>(c));
+    V mass = hn::Zero(d), mx = hn::Zero(d), my = hn::Zero(d), mz = hn::Zero(d);
+    for (std::size_t i = 0; i < b.samples; i += lanes) {
+      const auto is1 = hn::Eq(hn::Load(d, t[0] + i), index);
+      const auto is2 = hn::Eq(hn::Load(d, t[1] + i), index);
+      mass = hn::Add(mass, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[2] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[3] + i))));
+      mx = hn::Add(mx, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[4] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[7] + i))));
+      my = hn::Add(my, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[5] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[8] + i))));
+      mz = hn::Add(mz, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[6] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[9] + i))));
+    }
+    const float m = sum_lanes(d, mass);
+    sums.mass[c] = m;
+    sums.mx[c] = sum_lanes(d, mx) - m * b.seed_x[c];
+    sums.my[c] = sum_lanes(d, my) - m * b.seed_y[c];
+    sums.mz[c] = sum_lanes(d, mz) - m * b.seed_z[c];
+  }
+  return sum_lanes(d, energy);
+}
+
+void NearestInBlock(const BlockView& b, std::uint32_t* nearest) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto to_int = hn::RebindToSigned<D>();
+  HWY_ALIGN std::int32_t lane[8];
+  for (std::size_t i = 0; i < b.samples; i += lanes) {
+    const Loaded s = load(d, b, i);
+    V best = hn::Set(d, 1e30f), index = hn::Zero(d);
+    for (std::size_t c = 0; c < b.seeds; ++c) {
+      const float sx = b.seed_x[c], sy = b.seed_y[c], sz = b.seed_z[c];
+      const V g = hn::Sub(hn::Set(d, sx * sx + sy * sy + sz * sz),
+                          hn::Add(hn::Add(hn::Mul(s.x, hn::Set(d, 2 * sx)), hn::Mul(s.y, hn::Set(d, 2 * sy))),
+                                  hn::Mul(s.z, hn::Set(d, 2 * sz))));
+      index = hn::IfThenElse(hn::Lt(g, best), hn::Set(d, static_cast<float>(c)), index);
+      best = hn::Min(best, g);
+    }
+    hn::Store(hn::ConvertTo(to_int, index), to_int, lane);
+    for (std::size_t l = 0; l < lanes && i + l < b.samples; ++l) nearest[i + l] = static_cast<std::uint32_t>(lane[l]);
+  }
+}
+
+void NearestPairInBlock(const BlockView& b, std::uint32_t* first, std::uint32_t* second, float* distance) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  HWY_ALIGN float index1[8], index2[8], gap[8];
+  for (std::size_t i = 0; i < b.samples; i += lanes) {
+    const Loaded s = load(d, b, i);
+    const Nearest2 n = nearest_two(d, b, s.x, s.y, s.z);
+    hn::Store(n.first, d, index1);
+    hn::Store(n.second, d, index2);
+    hn::Store(hn::Sub(n.distance_second, n.distance_first), d, gap);
+    for (std::size_t l = 0; l < lanes && i + l < b.samples; ++l) {
+      const auto c1 = first[i + l] = static_cast<std::uint32_t>(index1[l]);
+      const auto c2 = second[i + l] = static_cast<std::uint32_t>(index2[l]);
+      const float dx = b.seed_x[c2] - b.seed_x[c1], dy = b.seed_y[c2] - b.seed_y[c1], dz = b.seed_z[c2] - b.seed_z[c1];
+      distance[i + l] = gap[l] / (1e-30f + 2 * __builtin_sqrtf(dx * dx + dy * dy + dz * dz));
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace evenmesh
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace evenmesh {
+
+HWY_EXPORT(EvaluateBlock);
+HWY_EXPORT(NearestInBlock);
+HWY_EXPORT(NearestPairInBlock);
+
+double evaluate_block(const BlockView& block, Footprint footprint, const BlockScratch& scratch, const BlockSums& sums) {
+  return HWY_DYNAMIC_DISPATCH(EvaluateBlock)(block, footprint, scratch, sums);
+}
+void nearest_in_block(const BlockView& block, std::uint32_t* nearest) {
+  HWY_DYNAMIC_DISPATCH(NearestInBlock)(block, nearest);
+}
+void nearest_pair_in_block(const BlockView& block, std::uint32_t* first, std::uint32_t* second, float* distance) {
+  HWY_DYNAMIC_DISPATCH(NearestPairInBlock)(block, first, second, distance);
+}
+
+}  // namespace evenmesh
+#endif

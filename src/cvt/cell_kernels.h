@@ -1,0 +1,42 @@
+#pragma once
+/// SIMD kernels of CellEvaluator: one block of samples against its candidate seeds.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace evenmesh {
+
+/// Samples of a block and its candidate seeds, all relative to the block's centre. At least one seed.
+struct BlockView {
+  const float *x, *y, *z, *area;
+  std::size_t samples;
+  const float *seed_x, *seed_y, *seed_z;
+  std::size_t seeds;
+};
+
+/// Width of a footprint: radius of the disc over the square root of its area.
+struct Footprint {
+  float radius;
+};
+
+/// Scratch for the largest block: arrays of `capacity` floats, 64-byte aligned, in one allocation.
+struct BlockScratch {
+  static constexpr int arrays = 10;
+  float* array[arrays];
+};
+
+/// Per candidate seed: Σ w, Σ w·(x − s).
+struct BlockSums {
+  float *mass, *mx, *my, *mz;
+};
+
+/// Mass and first moments about each seed, footprints cut by bisectors; returns the block's energy.
+double evaluate_block(const BlockView& block, Footprint footprint, const BlockScratch& scratch, const BlockSums& sums);
+
+/// Position in the candidate list of the nearest seed of every sample, first one on ties.
+void nearest_in_block(const BlockView& block, std::uint32_t* nearest);
+
+/// The two nearest, and the distance to their bisector (first == second, distance large, when there is one seed only).
+void nearest_pair_in_block(const BlockView& block, std::uint32_t* first, std::uint32_t* second, float* bisector_distance);
+
+}  // namespace evenmesh

@@ -1,0 +1,170 @@
+#include "cvt/cells.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <hwy/aligned_allocator.h>
+
+#include "cvt/candidates.h"
+#include "cvt/cell_kernels.h"
+
+namespace evenmesh {
+namespace {
+
+/// Radius of a footprint over the square root of its area. A square of that area has the same variance at 0.645; the
+/// samples of three ray directions lie less evenly than a square grid, and a wider footprint evens them out (docs/cvt.md).
+constexpr Footprint footprint{0.85f};
+
+/// Seeds of one block in single precision, and its sums.
+struct Workspace {
+  std::vector<float> seeds, sums;
+  hwy::AlignedFreeUniquePtr<float[]> scratch_memory;
+  BlockScratch scratch{};
+  std::vector<std::uint32_t> first, second;
+  std::vector<float> distance;
+
+  Workspace(std::size_t largest_block) {
+    const std::size_t capacity = (largest_block + 15) / 16 * 16;
+    scratch_memory = hwy::AllocateAligned<float>(capacity * BlockScratch::arrays);
+    for (int a = 0; a < BlockScratch::arrays; ++a) scratch.array[a] = scratch_memory.get() + capacity * a;
+    first.resize(largest_block), second.resize(largest_block), distance.resize(largest_block);
+  }
+};
+
+/// Mass and moments of every cell as 64-bit fixed-point numbers: their sum does not depend on the order.
+struct FixedSums {
+  std::vector<std::array<std::int64_t, 4>> cell;
+};
+
+}  // namespace
+
+struct CellEvaluator::State {
+  const SampleSet& samples;
+  Run& run;
+  CandidateLists lists;
+  std::size_t largest_block = 0;
+  std::vector<Vec3> last_seeds;
+  std::vector<double> block_energy;
+  tbb::enumerable_thread_specific<FixedSums> fixed;
+  tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces;
+
+  State(const SampleSet& s, Run& r) : samples(s), run(r), lists(s, r) {
+    for (const SampleBlock& b : s.blocks) largest_block = std::max<std::size_t>(largest_block, b.end - b.begin);
+    block_energy.resize(s.blocks.size());
+  }
+
+  /// Seeds that move little since the last call get lists with a margin, so that the next calls need no new ones.
+  void update_lists(std::span<const Vec3> seeds) {
+    const double spacing = std::sqrt(samples.total_area / static_cast<double>(seeds.size()));
+    double margin = 0;
+    if (last_seeds.size() == seeds.size()) {
+      double move = 0;
+      for (std::size_t i = 0; i < seeds.size(); ++i) move = std::max(move, squared_norm(seeds[i] - last_seeds[i]));
+      margin = std::min(4 * std::sqrt(move), 0.15 * spacing);
+    }
+    last_seeds.assign(seeds.begin(), seeds.end());
+    lists.update(seeds, margin, run);
+  }
+
+  /// Calls work(block index, view, candidates, workspace) for every block, in parallel.
+  template <typename Work>
+  void for_blocks(std::span<const Vec3> seeds, const Work& work) {
+    parallel_for(run, samples.blocks.size(), 128, [&](std::size_t begin, std::size_t end) {
+      auto& workspace = workspaces.local();
+      if (!workspace) workspace = std::make_unique<Workspace>(largest_block);
+      for (std::size_t b = begin; b < end; ++b) {
+        const SampleBlock& block = samples.blocks[b];
+        const auto candidates = lists.of_block(b);
+        const Vec3 center = samples.block_center(block);
+        const std::size_t n = candidates.size();
+        workspace->seeds.resize(3 * n);
+        float* s = workspace->seeds.data();
+        for (std::size_t c = 0; c < n; ++c) {
+          const Vec3 offset = seeds[candidates[c]] - center;
+          s[c] = static_cast<float>(offset.x), s[n + c] = static_cast<float>(offset.y), s[2 * n + c] = static_cast<float>(offset.z);
+        }
+        const std::size_t at = block.begin;
+        const BlockView view{samples.x.data() + at, samples.y.data() + at,    samples.z.data() + at, samples.area.data() + at,
+                             block.end - at,        s, s + n, s + 2 * n, n};
+        work(b, view, candidates, *workspace);
+      }
+    });
+  }
+};
+
+CellEvaluator::CellEvaluator(const SampleSet& samples, Run& run) : state_(std::make_unique<State>(samples, run)) {}
+CellEvaluator::~CellEvaluator() = default;
+const SampleSet& CellEvaluator::samples() const { return state_->samples; }
+
+void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
+  State& state = *state_;
+  state.update_lists(seeds);
+  const double area = state.samples.total_area;
+  // Masses add up to `area`, moments to less than area × extent: 2^61 leaves room for rounding.
+  const Grid& grid = state.samples.grid;
+  const double extent = grid.spacing * std::max({grid.size[0], grid.size[1], grid.size[2]});
+  const double mass_unit = area * 0x1p-60, moment_unit = area * extent * 0x1p-60;
+  for (FixedSums& f : state.fixed) f.cell.assign(seeds.size(), {});
+  state.for_blocks(seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {
+    auto& fixed = state.fixed.local();
+    if (fixed.cell.size() != seeds.size()) fixed.cell.assign(seeds.size(), {});
+    const std::size_t n = candidates.size();
+    work.sums.resize(4 * n);
+    const BlockSums out{work.sums.data(), work.sums.data() + n, work.sums.data() + 2 * n, work.sums.data() + 3 * n};
+    state.block_energy[b] = evaluate_block(view, footprint, work.scratch, out);
+    const double to_mass = 1 / mass_unit, to_moment = 1 / moment_unit;
+    for (std::size_t c = 0; c < n; ++c) {
+      auto& cell = fixed.cell[candidates[c]];
+      if (out.mass[c] == 0 && out.mx[c] == 0) continue;
+      cell[0] += static_cast<std::int64_t>(out.mass[c] * to_mass);
+      cell[1] += static_cast<std::int64_t>(out.mx[c] * to_moment);
+      cell[2] += static_cast<std::int64_t>(out.my[c] * to_moment);
+      cell[3] += static_cast<std::int64_t>(out.mz[c] * to_moment);
+    }
+  });
+  sums.mass.assign(seeds.size(), 0);
+  sums.moment.assign(seeds.size(), {});
+  parallel_for(state.run, seeds.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::array<std::int64_t, 4> total{};
+      for (const FixedSums& f : state.fixed)
+        if (f.cell.size() == seeds.size())
+          for (int a = 0; a < 4; ++a) total[a] += f.cell[i][a];
+      sums.mass[i] = total[0] * mass_unit;
+      sums.moment[i] = Vec3{double(total[1]), double(total[2]), double(total[3])} * moment_unit;
+    }
+  });
+  sums.energy = 0;
+  for (const double e : state.block_energy) sums.energy += e;
+}
+
+void CellEvaluator::nearest(std::span<const Vec3> seeds, std::vector<std::uint32_t>& labels) {
+  State& state = *state_;
+  state.update_lists(seeds);
+  labels.resize(state.samples.size());
+  state.for_blocks(seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace&) {
+    std::uint32_t* out = labels.data() + state.samples.blocks[b].begin;
+    nearest_in_block(view, out);
+    for (std::size_t i = 0; i < view.samples; ++i) out[i] = candidates[out[i]];
+  });
+}
+
+void CellEvaluator::nearest_pairs(std::span<const Vec3> seeds, std::vector<NearestPair>& pairs) {
+  State& state = *state_;
+  state.update_lists(seeds);
+  pairs.resize(state.samples.size());
+  state.for_blocks(seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {
+    nearest_pair_in_block(view, work.first.data(), work.second.data(), work.distance.data());
+    NearestPair* out = pairs.data() + state.samples.blocks[b].begin;
+    for (std::size_t i = 0; i < view.samples; ++i)
+      out[i] = {candidates[work.first[i]], candidates[work.second[i]], work.distance[i]};
+  });
+}
+
+double energy_ratio(double energy, std::size_t seeds, double area) {
+  return energy * static_cast<double>(seeds) / (area * area) / (5 / (18 * std::numbers::sqrt3));
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,58 @@
+#pragma once
+/// Voronoi cells of seeds on a sampled surface: masses, centroids, energy, labels.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/parallel.h"
+#include "sample/sample_set.h"
+
+namespace evenmesh {
+
+/// What one evaluation of the energy gives. Masses in squared model units.
+struct CellSums {
+  std::vector<double> mass;   ///< m_i, area of cell i
+  std::vector<Vec3> moment;   ///< Σ w (x − s_i) over cell i: the gradient of the energy is −2 · moment
+  double energy = 0;          ///< F = Σ_i Σ_{x in cell i} w |x − s_i|²
+};
+
+/// The two nearest seeds of a sample and how far it lies from their bisector.
+struct NearestPair {
+  std::uint32_t first = 0, second = 0;  ///< second = first when there is one seed only
+  float bisector_distance = 0;          ///< model units
+};
+
+/// Evaluates cells of changing seeds on one fixed set of samples.
+///
+/// A sample is not a point but a small disc of the surface: it is cut by the bisector of its two nearest seeds, and each
+/// part counts for its own seed. With that the energy is smooth in the seeds, and agrees with its gradient wherever no
+/// third seed is as near (docs/cvt.md has the comparison with point samples, boxes and clipped polygons).
+///
+/// Guarantee: same bits for any number of threads (sums are 64-bit integers). Cost: about 5 ns per sample and core.
+/// The discrete form of [Raster2Mesh §4.2].
+class CellEvaluator {
+ public:
+  /// Keeps a reference to `samples`.
+  CellEvaluator(const SampleSet& samples, Run& run);
+  ~CellEvaluator();
+  CellEvaluator(const CellEvaluator&) = delete;
+  CellEvaluator& operator=(const CellEvaluator&) = delete;
+
+  const SampleSet& samples() const;
+
+  void evaluate(std::span<const Vec3> seeds, CellSums& sums);
+  /// Nearest seed of every sample, ties to the lower index. Cost: about 2 ns per sample and core.
+  void nearest(std::span<const Vec3> seeds, std::vector<std::uint32_t>& labels);
+  void nearest_pairs(std::span<const Vec3> seeds, std::vector<NearestPair>& pairs);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Energy ratio F·k/A² / (5/(18√3)): 1 for a perfect hexagonal tiling of a plane.
+double energy_ratio(double energy, std::size_t seeds, double area);
+
+}  // namespace evenmesh
