@@ -39,6 +39,10 @@ class Field {
   /// f and its gradient at one point in double precision; gradient may be null. The default rounds through evaluate().
   virtual double evaluate(const Vec3& point, Vec3* gradient) const;
 
+  /// A cheaper field with the same bits at every point of `box` (branches of min, max and abs decided), or nullptr when
+  /// nothing is gained. Cost: one interval evaluation and one compilation, worth it from some thousand points on.
+  virtual std::shared_ptr<const Field> specialized(const Box& box) const;
+
   /// Step for numerical derivatives, model units.
   virtual double epsilon() const { return 1e-4; }
   /// True when f has a usable gradient; false for indicator functions, whose value is only -1 or 1.

@@ -1,0 +1,18 @@
+#pragma once
+/// Where a field's solid is.
+
+#include "evenmesh/mesh.h"
+#include "shape/field.h"
+
+namespace evenmesh {
+
+/// Box around the solid f < 0, a few per cent larger than the solid.
+///
+/// Interval arithmetic proves that f ≥ 0 from the box's sides outward, up to a distance of a million units from the
+/// origin; the farthest reaches stand for what lies beyond. The solid must show itself on a grid of 128 points along
+/// the box's longest side.
+/// Cost: a few milliseconds for formulas of a few dozen operations.
+/// @throws UnusableInput  the solid is unbounded, or nothing can be proved (no interval arithmetic), or f < 0 nowhere
+Box find_bounds(const Field& field);
+
+}  // namespace evenmesh
