@@ -62,7 +62,7 @@ Mesh read_mesh_file(const std::string& command, const std::string& name, Run& ru
   return read_mesh(name, run);
 }
 
-Shape read_shape(const InputArguments& input, const Box& bounds, Run& run) {
+void check_input(const InputArguments& input) {
   const std::size_t count = input.positional.size() + input.expressions.size();
   if (count == 0) {
     throw InvalidInput("no input; name a mesh file, '-' for standard input, gallery:NAME, or an expression after -e");
@@ -73,10 +73,13 @@ Shape read_shape(const InputArguments& input, const Box& bounds, Run& run) {
                                    input.expressions.empty() ? input.positional[1] : input.expressions.back(),
                                    count > 2 ? ", …" : ""));
   }
-  if (!input.expressions.empty()) return shape_from_expression(input.expressions[0], input.parameters, bounds);
-  if (!input.parameters.empty()) {
+  if (input.expressions.empty() && !input.parameters.empty()) {
     throw InvalidInput("-D gives a parameter of an expression; it needs an expression after -e");
   }
+}
+
+Shape read_shape(const InputArguments& input, const Box& bounds, Run& run) {
+  if (!input.expressions.empty()) return shape_from_expression(input.expressions[0], input.parameters, bounds);
   const std::string& name = input.positional[0];
   if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
   return shape_from_mesh(read_mesh_file("mesh", name, run), name == "-" ? "standard input" : name);

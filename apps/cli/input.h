@@ -18,8 +18,11 @@ struct InputArguments {
   std::map<std::string, double> parameters;  ///< -D
 };
 
-/// The one shape that the arguments name.
-/// @throws InvalidInput   none or several inputs, an expression or name that is wrong
+/// @throws InvalidInput  no input, several of them, or parameters without an expression
+void check_input(const InputArguments& input);
+
+/// The one shape that the checked arguments name.
+/// @throws InvalidInput   an expression or name that is wrong
 /// @throws NotAvailable   an input kind that this version does not contain
 /// @throws UnusableInput  a file that cannot be read
 Shape read_shape(const InputArguments& input, const Box& bounds, Run& run);

@@ -19,13 +19,15 @@ using cli::Status;
 void describe(CLI::App& app) {
   app.name("evenmesh");
   app.get_formatter()->column_width(34);
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.get_formatter()->label("Subcommands", "Commands");
   app.require_subcommand(0, 1);
-  app.set_version_flag("--version", "evenmesh " EVENMESH_VERSION);
+  app.set_version_flag("--version", "evenmesh " EVENMESH_VERSION, "print the version and exit");
   app.set_help_flag("-h,--help", "print this and exit");
   app.footer(
       "evenmesh COMMAND --help shows every option with default, unit and range.\n\n"
       "Exit status: 0 done, 1 internal error, 2 wrong usage, 3 input cannot be read or holds no surface,\n"
-      "4 done but a promise could not be kept (said which), 130 cancelled (nothing written).");
+      "4 done but a promise could not be kept (said which), 130 cancelled (nothing written).\n");
 }
 
 int parse_and_act(int argc, char** argv) {

@@ -13,7 +13,7 @@ void add_mesh_command(CLI::App& app, Action& action) {
   command->footer(
       "Examples:\n  evenmesh mesh scan.stl -n 20000 -o even.ply\n  evenmesh mesh -e 'x^2+y^2+z^2-1' -l 0.05 -o "
       "ball.obj\n"
-      "  evenmesh mesh gallery:octic -n 20000 -o octic.ply --report octic.html");
+      "  evenmesh mesh gallery:octic -n 20000 -o octic.ply --report octic.html\n");
   const std::string group = "What goes in";
   command
       ->add_option("INPUT", a->input.positional,

@@ -120,6 +120,8 @@ struct Plan {
 };
 
 Plan check(MeshingArguments& a) {
+  for (const std::string& text : a.definitions) a.input.parameters.insert(definition("-D", text));
+  check_input(a.input);
   refuse_planned_options(a);
   Plan plan;
   plan.options = mesh_options(a);
@@ -127,8 +129,6 @@ Plan check(MeshingArguments& a) {
   choice("--progress", a.progress, {"auto", "on", "off"});
   if (a.quiet && a.verbose) throw InvalidInput("-q and -v contradict each other; give one of them");
   plan.talk = a.quiet ? Talk::quiet : a.verbose ? Talk::verbose : Talk::normal;
-  for (const std::string& text : a.definitions)
-    a.input.parameters.insert_or_assign(definition("-D", text).first, definition("-D", text).second);
   plan.output = check_mesh_output(a.output, a.format);
   if (!a.report.empty()) check_output("--report", a.report);
   if (!a.json.empty()) check_output("--json", a.json);
