@@ -140,7 +140,9 @@ TEST(Layering, EveryHeaderIsGuardedAndNoFileIsTooLong) {
         if (lines == 0) first = line;
       }
       EXPECT_LE(lines, 500u) << file;
-      if (file.extension() == ".h") EXPECT_EQ(first, "#pragma once") << file;
+      // Highway compiles "-inl.h" files once per instruction set; they guard themselves.
+      const bool many_times = file.filename().string().ends_with("-inl.h");
+      if (file.extension() == ".h" && !many_times) EXPECT_EQ(first, "#pragma once") << file;
     }
   }
 }
