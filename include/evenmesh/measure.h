@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct MeshQuality {
 
 /// Cost: O(faces · log faces) at worst; 100,000 faces take some ten milliseconds.
 MeshQuality measure_quality(const Mesh& mesh, Run& run = Run::silent());
+
+/// A line per figure, `"key": value`, as one JSON object (keys of the command line's --json).
+std::string quality_json(const MeshQuality& quality);
 
 /// Histogram over equal bins of [lo, hi]; values outside fall into the first or last bin.
 struct Histogram {

@@ -6,11 +6,6 @@
 namespace evenmesh {
 namespace {
 
-constexpr double half_ulp = 0x1p-53;
-// Error bounds of the plain evaluations relative to their permanents, Shewchuk §4.2 and §4.3.
-constexpr double filter_2d = (3 + 16 * half_ulp) * half_ulp;
-constexpr double filter_3d = (7 + 56 * half_ulp) * half_ulp;
-
 /// A number as an unevaluated sum of doubles that do not overlap, smallest first, without zeros.
 template <int Capacity>
 struct Expansion {
@@ -115,41 +110,19 @@ Expansion<16> determinant(const Expansion<2>& a, const Expansion<2>& b, const Ex
   return a * d + -(b * c);
 }
 
-int orient2d_exact(const Point2& a, const Point2& b, const Point2& c) {
+}  // namespace
+
+int detail::orient2d_exact(const Point2& a, const Point2& b, const Point2& c) {
   return determinant(difference(b.x, a.x), difference(b.y, a.y), difference(c.x, a.x), difference(c.y, a.y)).sign();
 }
 
-int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+int detail::orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Expansion<2> bx = difference(b.x, a.x), by = difference(b.y, a.y), bz = difference(b.z, a.z);
   const Expansion<2> cx = difference(c.x, a.x), cy = difference(c.y, a.y), cz = difference(c.z, a.z);
   const auto x = determinant(by, bz, cy, cz) * difference(d.x, a.x);
   const auto y = determinant(bz, bx, cz, cx) * difference(d.y, a.y);
   const auto z = determinant(bx, by, cx, cy) * difference(d.z, a.z);
   return (x + y + z).sign();
-}
-
-}  // namespace
-
-int orient2d(const Point2& a, const Point2& b, const Point2& c) {
-  const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x);
-  const double determinant = left - right, bound = filter_2d * (std::abs(left) + std::abs(right));
-  if (determinant > bound) return 1;
-  if (-determinant > bound) return -1;
-  return orient2d_exact(a, b, c);
-}
-
-int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 u = b - a, v = c - a, w = d - a;
-  const double uy_vz = u.y * v.z, uz_vy = u.z * v.y, uz_vx = u.z * v.x, ux_vz = u.x * v.z;
-  const double ux_vy = u.x * v.y, uy_vx = u.y * v.x;
-  const double determinant = w.x * (uy_vz - uz_vy) + w.y * (uz_vx - ux_vz) + w.z * (ux_vy - uy_vx);
-  const double permanent = std::abs(w.x) * (std::abs(uy_vz) + std::abs(uz_vy)) +
-                           std::abs(w.y) * (std::abs(uz_vx) + std::abs(ux_vz)) +
-                           std::abs(w.z) * (std::abs(ux_vy) + std::abs(uy_vx));
-  const double bound = filter_3d * permanent;
-  if (determinant > bound) return 1;
-  if (-determinant > bound) return -1;
-  return orient3d_exact(a, b, c, d);
 }
 
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
