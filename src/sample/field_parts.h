@@ -1,0 +1,97 @@
+#pragma once
+/// Sampling of implicit surfaces, piece by piece of the grid.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/parallel.h"
+#include "sample/sample_set.h"
+#include "shape/field.h"
+
+namespace evenmesh {
+
+/// Coordinates of all grid points, rounded once, so that every brick hands the very same floats to the field, and the
+/// range of grid points that lie within the bounds.
+struct FieldGrid {
+  Grid grid;
+  std::array<std::vector<float>, 3> coordinate;  ///< a multiple of a brick, and one more, of entries
+  std::array<std::int32_t, 3> first{}, last{};   ///< grid points within the bounds, inclusive
+  std::array<double, 3> face_lo{}, face_hi{};    ///< faces of the bounds in cells from the origin
+
+  bool within(unsigned axis, std::int32_t i) const { return i >= first[axis] && i <= last[axis]; }
+};
+FieldGrid make_field_grid(const Grid& grid, const Box& bounds);
+
+/// A sign change on one grid edge, with what is known of f along it. Positions are in cells from the edge's lower end.
+struct Bracket {
+  EdgeCode code;
+  bool on_bounds = false;  ///< one end lies beyond the bounds: its position is that of the face
+  std::uint32_t block = 0;
+  float t_lo = 0, t_hi = 1;
+  float f_lo = 0, f_hi = 0;
+};
+
+/// Samples of a few neighbouring bricks, in their final order.
+struct FieldPart {
+  std::vector<SampleBlock> blocks;  ///< ranges count from this part's first sample
+  std::vector<float> x, y, z, area;
+  std::vector<PackedNormal> normal;
+  std::vector<EdgeCode> edge;
+  bool cut_by_bounds = false;
+};
+
+/// Finds the edges of a cube of bricks on which f changes its sign.
+class TileScanner {
+ public:
+  /// Appends the brackets of `side` / 8 bricks cubed from grid point `corner` on, in Morton order of the bricks, and
+  /// their blocks to `part`. @param side  8 or 32
+  void scan(const Field& field, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner, unsigned side,
+            std::vector<Bracket>& brackets, FieldPart& part);
+
+ private:
+  bool evaluate(const Field& field, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner, unsigned side);
+  void scan_brick(const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
+                  const std::array<std::uint32_t, 3>& offset, std::vector<Bracket>& brackets, FieldPart& part);
+
+  unsigned points_ = 0;  // per side of the tile
+  std::vector<float> x_, y_, z_, f_;
+  std::vector<std::uint8_t> inside_;
+};
+
+/// Finds where f = 0 on each bracket, to 1e-4 cells, with its normal, and appends the samples to `part`.
+/// Fields without gradient are bisected to 2^-12 cells and get the edge's axis as their normal.
+class RootFinder {
+ public:
+  void find(const Field& field, const FieldGrid& grid, std::vector<Bracket>& brackets, FieldPart& part);
+
+ private:
+  struct Root {
+    float t = 0;
+    float n[3] = {};
+    bool made = false;
+  };
+  void find_batch(std::span<Bracket> brackets, FieldPart& part);
+  void place(std::size_t slot, const Bracket& bracket, float t);
+  void evaluate(std::size_t count);
+  void clip_to_bounds(std::span<Bracket> brackets);
+  void first_guess(std::span<Bracket> brackets);
+  void refine(std::span<Bracket> brackets);
+  void bisect(std::span<Bracket> brackets);
+  void append(std::span<const Bracket> brackets, FieldPart& part) const;
+
+  const Field* field_ = nullptr;
+  const FieldGrid* grid_ = nullptr;
+  const FieldPart* part_ = nullptr;
+  std::vector<Root> roots_;
+  std::vector<std::uint32_t> active_, on_bounds_;
+  std::vector<float> x_, y_, z_, f_, dx_, dy_, dz_;
+};
+
+/// Samples where f changes its sign on the grid and within the bounds (empty: the grid's), without sources.
+SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, const Run& run);
+
+/// Normals and areas from the positions of the samples around each: least-squares planes, oriented by the edges' codes.
+void fit_normals(SampleSet& set, const Run& run);
+
+}  // namespace evenmesh

@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <cmath>
+
+#include "sample/field_parts.h"
+
+namespace evenmesh {
+namespace {
+
+constexpr std::size_t kBatch = 1024;  // points per evaluation: enough to hide its overhead, small enough for the cache
+constexpr float kTolerance = 1e-4f;   // cells
+constexpr float kAgreement = 1e-3f;   // cells; between Newton's and the secant's guess
+constexpr float kBeyond = 1e-3f;      // cells beyond a face of the bounds where f is asked whether it goes on
+constexpr int kMostSteps = 40;
+constexpr int kBisections = 12;
+
+bool inside(float f) {
+  return f < 0.0f;
+}
+
+float in_cell(float t) {
+  return std::clamp(t, 0.0f, 0x1.fffffep-1f);
+}
+
+// Where the chord through the ends of the bracket is 0, or the middle when there is no such place.
+float chord_root(const Bracket& b) {
+  const float share = b.f_lo / (b.f_lo - b.f_hi);
+  return b.t_lo + (b.t_hi - b.t_lo) * (share > 0.0f && share < 1.0f ? share : 0.5f);
+}
+
+void narrow(Bracket& b, float t, float f) {
+  if (inside(f) == b.code.lower_end_inside())
+    b.t_lo = t, b.f_lo = f;
+  else
+    b.t_hi = t, b.f_hi = f;
+}
+
+}  // namespace
+
+void RootFinder::find(const Field& field, const FieldGrid& grid, std::vector<Bracket>& brackets, FieldPart& part) {
+  field_ = &field, grid_ = &grid, part_ = &part;
+  for (std::size_t begin = 0; begin < brackets.size(); begin += kBatch)
+    find_batch(std::span(brackets).subspan(begin, std::min(kBatch, brackets.size() - begin)), part);
+}
+
+void RootFinder::find_batch(std::span<Bracket> brackets, FieldPart& part) {
+  const std::size_t n = brackets.size();
+  roots_.assign(n, Root{});
+  active_.clear();
+  for (std::vector<float>* v : {&x_, &y_, &z_, &f_, &dx_, &dy_, &dz_}) v->resize(kBatch);
+  clip_to_bounds(brackets);
+  if (field_->has_gradient()) {
+    first_guess(brackets);
+    refine(brackets);
+  } else {
+    bisect(brackets);
+  }
+  append(brackets, part);
+}
+
+// Writes the point at t on the bracket's edge into the batch.
+void RootFinder::place(std::size_t slot, const Bracket& bracket, float t) {
+  const SampleBlock& block = part_->blocks[bracket.block];
+  const EdgeCode code = bracket.code;
+  const std::uint32_t at[3] = {block.brick[0] * 8u + code.i(), block.brick[1] * 8u + code.j(),
+                               block.brick[2] * 8u + code.k()};
+  float p[3] = {grid_->coordinate[0][at[0]], grid_->coordinate[1][at[1]], grid_->coordinate[2][at[2]]};
+  const unsigned axis = code.axis();
+  const Grid& grid = grid_->grid;
+  p[axis] = static_cast<float>(grid.origin[static_cast<int>(axis)] + grid.spacing * (at[axis] + double{t}));
+  x_[slot] = p[0], y_[slot] = p[1], z_[slot] = p[2];
+}
+
+void RootFinder::evaluate(std::size_t n) {
+  if (n == 0) return;
+  field_->evaluate({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)}, std::span(f_).first(n));
+}
+
+// Edges that leave the bounds: where f is still negative just beyond the face, the face is the surface.
+void RootFinder::clip_to_bounds(std::span<Bracket> brackets) {
+  on_bounds_.clear();
+  const auto probe = [](const Bracket& b) {
+    return b.code.lower_end_inside() ? std::min(b.t_hi + kBeyond, 1.0f) : std::max(b.t_lo - kBeyond, 0.0f);
+  };
+  for (std::uint32_t i = 0; i < brackets.size(); ++i)
+    if (brackets[i].on_bounds) {
+      place(on_bounds_.size(), brackets[i], probe(brackets[i]));
+      on_bounds_.push_back(i);
+    }
+  evaluate(on_bounds_.size());
+  for (std::size_t s = 0; s < on_bounds_.size(); ++s) {
+    Bracket& b = brackets[on_bounds_[s]];
+    Root& root = roots_[on_bounds_[s]];
+    const bool up = b.code.lower_end_inside();
+    const float face = up ? b.t_hi : b.t_lo;
+    if (inside(f_[s])) {
+      root.made = true, root.t = face;
+    } else if (up) {
+      b.t_hi = probe(b), b.f_hi = f_[s];
+    } else {
+      b.t_lo = probe(b), b.f_lo = f_[s];
+    }
+  }
+}
+
+// One evaluation with gradient at the chord's root. Newton's step from there and the chord of the narrower bracket
+// enclose the root when f bends one way only; when they agree, Newton's is kept.
+void RootFinder::first_guess(std::span<Bracket> brackets) {
+  const std::size_t n = brackets.size();
+  const float h = static_cast<float>(grid_->grid.spacing);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!roots_[i].made) roots_[i].t = chord_root(brackets[i]);
+    place(i, brackets[i], roots_[i].t);
+  }
+  field_->evaluate_gradient({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)},
+                            std::span(f_).first(n), std::span(dx_).first(n), std::span(dy_).first(n),
+                            std::span(dz_).first(n));
+  for (std::uint32_t i = 0; i < n; ++i) {
+    Root& root = roots_[i];
+    if (root.made) continue;
+    root.n[0] = dx_[i], root.n[1] = dy_[i], root.n[2] = dz_[i];
+    narrow(brackets[i], root.t, f_[i]);
+    const float newton = root.t - f_[i] / (root.n[brackets[i].code.axis()] * h), chord = chord_root(brackets[i]);
+    if (std::abs(newton - chord) < kAgreement && newton >= brackets[i].t_lo && newton <= brackets[i].t_hi)
+      root.t = newton;
+    else
+      active_.push_back(i);
+  }
+}
+
+// The Illinois variant of regula falsi, with a bisection every third step, then the gradient at the root. Guesses keep
+// half a tolerance away from the ends, so that a root next to one end closes the bracket.
+void RootFinder::refine(std::span<Bracket> brackets) {
+  const std::vector<std::uint32_t> stubborn = active_;
+  for (int step = 0; step < kMostSteps && !active_.empty(); ++step) {
+    for (std::size_t s = 0; s < active_.size(); ++s) {
+      const Bracket& b = brackets[active_[s]];
+      const float margin = std::min(0.5f * kTolerance, 0.5f * (b.t_hi - b.t_lo));
+      const float guess = step % 3 == 2 ? 0.5f * (b.t_lo + b.t_hi) : chord_root(b);
+      roots_[active_[s]].t = std::clamp(guess, b.t_lo + margin, b.t_hi - margin);
+      place(s, b, roots_[active_[s]].t);
+    }
+    evaluate(active_.size());
+    std::size_t left = 0;
+    for (std::size_t s = 0; s < active_.size(); ++s) {
+      Bracket& b = brackets[active_[s]];
+      Root& root = roots_[active_[s]];
+      const bool low = inside(f_[s]) == b.code.lower_end_inside();
+      narrow(b, root.t, f_[s]);
+      // Halving the value at the end that stays draws the next chord towards it.
+      (low ? b.f_hi : b.f_lo) *= 0.5f;
+      if (b.t_hi - b.t_lo > kTolerance) active_[left++] = active_[s];
+    }
+    active_.resize(left);
+  }
+  for (std::size_t s = 0; s < stubborn.size(); ++s) place(s, brackets[stubborn[s]], roots_[stubborn[s]].t);
+  const std::size_t n = stubborn.size();
+  if (n == 0) return;
+  field_->evaluate_gradient({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)},
+                            std::span(f_).first(n), std::span(dx_).first(n), std::span(dy_).first(n),
+                            std::span(dz_).first(n));
+  for (std::size_t s = 0; s < n; ++s)
+    roots_[stubborn[s]].n[0] = dx_[s], roots_[stubborn[s]].n[1] = dy_[s], roots_[stubborn[s]].n[2] = dz_[s];
+}
+
+void RootFinder::bisect(std::span<Bracket> brackets) {
+  for (int step = 0; step <= kBisections; ++step) {
+    for (std::size_t i = 0; i < brackets.size(); ++i) {
+      if (!roots_[i].made) roots_[i].t = 0.5f * (brackets[i].t_lo + brackets[i].t_hi);
+      place(i, brackets[i], roots_[i].t);
+    }
+    if (step == kBisections) return;
+    evaluate(brackets.size());
+    for (std::size_t i = 0; i < brackets.size(); ++i) narrow(brackets[i], roots_[i].t, f_[i]);
+  }
+}
+
+void RootFinder::append(std::span<const Bracket> brackets, FieldPart& part) const {
+  const float h = static_cast<float>(grid_->grid.spacing);
+  constexpr float half = brick_size / 2.0f;
+  for (std::size_t i = 0; i < brackets.size(); ++i) {
+    const EdgeCode code = brackets[i].code;
+    const unsigned axis = code.axis();
+    const Root& root = roots_[i];
+    float at[3] = {code.i() - half, code.j() - half, code.k() - half};
+    at[axis] += in_cell(root.t);
+    Vec3 normal{root.n[0], root.n[1], root.n[2]};
+    const double length = norm(normal);
+    if (root.made || !(length > 0) || !std::isfinite(length)) {
+      normal = {};
+      normal[static_cast<int>(axis)] = code.lower_end_inside() ? 1 : -1;
+    } else {
+      normal *= 1 / length;
+    }
+    part.x.push_back(at[0] * h), part.y.push_back(at[1] * h), part.z.push_back(at[2] * h);
+    part.area.push_back(h * h / static_cast<float>(std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z)));
+    part.normal.push_back(pack_normal(normal));
+    part.edge.push_back(code);
+    part.cut_by_bounds = part.cut_by_bounds || root.made;
+  }
+}
+
+}  // namespace evenmesh

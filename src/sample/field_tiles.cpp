@@ -1,0 +1,124 @@
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "sample/field_parts.h"
+#include "sample/morton.h"
+
+namespace evenmesh {
+namespace {
+
+// Bit k = byte k, for eight bytes of 0 or 1.
+unsigned pack_bytes(const std::uint8_t* bytes) {
+  std::uint64_t v;
+  std::memcpy(&v, bytes, 8);
+  return static_cast<unsigned>(v * 0x0102040810204080ull >> 56);
+}
+
+}  // namespace
+
+FieldGrid make_field_grid(const Grid& grid, const Box& bounds) {
+  FieldGrid result;
+  result.grid = grid;
+  for (unsigned a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    const std::uint32_t n = (grid.size[a] + 31) / 32 * 32 + 1;
+    for (std::uint32_t i = 0; i < n; ++i)
+      result.coordinate[a].push_back(static_cast<float>(grid.origin[axis] + grid.spacing * i));
+    const double top = grid.size[a] - 1.5;
+    double lo = 0.5, hi = top;
+    if (!bounds.empty()) {
+      lo = std::clamp((bounds.lo[axis] - grid.origin[axis]) / grid.spacing, 0.5, top);
+      hi = std::clamp((bounds.hi[axis] - grid.origin[axis]) / grid.spacing, 0.5, top);
+    }
+    result.face_lo[a] = lo, result.face_hi[a] = hi;
+    result.first[a] = static_cast<std::int32_t>(std::ceil(lo));
+    result.last[a] = static_cast<std::int32_t>(std::floor(hi));
+  }
+  return result;
+}
+
+// Evaluates f at all points of the tile, z fastest; false when all of them are outside, or inside and within the
+// bounds.
+bool TileScanner::evaluate(const Field& field, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
+                           unsigned side) {
+  points_ = side + 1;
+  const std::size_t count = std::size_t{points_} * points_ * points_;
+  x_.resize(count), y_.resize(count), z_.resize(count), f_.resize(count);
+  inside_.resize(count + 8);
+  const float* zs = &grid.coordinate[2][corner[2]];
+  std::size_t at = 0;
+  for (unsigned i = 0; i < points_; ++i)
+    for (unsigned j = 0; j < points_; ++j) {
+      const float x = grid.coordinate[0][corner[0] + i], y = grid.coordinate[1][corner[1] + j];
+      for (unsigned k = 0; k < points_; ++k, ++at) x_[at] = x, y_[at] = y, z_[at] = zs[k];
+    }
+  field.evaluate({x_, y_, z_}, f_);
+  std::size_t negative = 0;
+  for (std::size_t i = 0; i < count; ++i) negative += inside_[i] = f_[i] < 0.0f ? 1 : 0;
+  bool within = true;
+  for (unsigned a = 0; a < 3; ++a)
+    within = within && grid.within(a, static_cast<std::int32_t>(corner[a])) &&
+             grid.within(a, static_cast<std::int32_t>(corner[a] + side));
+  return negative != 0 && (negative != count || !within);
+}
+
+void TileScanner::scan(const Field& field, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
+                       unsigned side, std::vector<Bracket>& brackets, FieldPart& part) {
+  if (!evaluate(field, grid, corner, side)) return;
+  const std::uint64_t bricks = std::uint64_t{side / 8} * (side / 8) * (side / 8);
+  for (std::uint64_t b = 0; b < bricks; ++b) {
+    const auto brick = morton_decode(b);
+    scan_brick(grid, corner, {brick[0] * 8u, brick[1] * 8u, brick[2] * 8u}, brackets, part);
+  }
+}
+
+void TileScanner::scan_brick(const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
+                             const std::array<std::uint32_t, 3>& offset, std::vector<Bracket>& brackets,
+                             FieldPart& part) {
+  std::array<std::int32_t, 3> start{};
+  for (unsigned a = 0; a < 3; ++a) start[a] = static_cast<std::int32_t>(corner[a] + offset[a]);
+  unsigned within_k = 0;
+  for (int k = 0; k < 9; ++k) within_k |= grid.within(2, start[2] + k) ? 1u << k : 0u;
+  const std::size_t stride[3] = {std::size_t{points_} * points_, points_, 1};
+  const std::size_t base = offset[0] * stride[0] + offset[1] * stride[1] + offset[2];
+  // Inside along z, in the bits of mask[i][j]; points beyond the bounds are outside.
+  unsigned mask[9][9];
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j) {
+      const std::uint8_t* bytes =
+          &inside_[base + static_cast<unsigned>(i) * stride[0] + static_cast<unsigned>(j) * stride[1]];
+      const bool within = grid.within(0, start[0] + i) && grid.within(1, start[1] + j);
+      mask[i][j] = within ? (pack_bytes(bytes) | static_cast<unsigned>(bytes[8]) << 8) & within_k : 0u;
+    }
+  const std::size_t first = brackets.size();
+  for (unsigned axis = 0; axis < 3; ++axis)
+    for (unsigned i = 0; i < 8; ++i)
+      for (unsigned j = 0; j < 8; ++j) {
+        const unsigned here = mask[i][j];
+        const unsigned next = axis == 0 ? mask[i + 1][j] : axis == 1 ? mask[i][j + 1] : here >> 1;
+        for (unsigned change = (here ^ next) & 255u; change != 0; change &= change - 1) {
+          const auto k = static_cast<unsigned>(std::countr_zero(change));
+          const std::size_t at = base + i * stride[0] + j * stride[1] + k;
+          Bracket bracket;
+          bracket.code = EdgeCode(axis, i, j, k, (here >> k & 1) != 0);
+          bracket.block = static_cast<std::uint32_t>(part.blocks.size());
+          bracket.f_lo = f_[at], bracket.f_hi = f_[at + stride[axis]];
+          const unsigned index[3] = {i, j, k};
+          const std::int32_t lower = start[axis] + static_cast<std::int32_t>(index[axis]);
+          if (!grid.within(axis, lower)) {
+            bracket.on_bounds = true, bracket.t_lo = static_cast<float>(grid.face_lo[axis] - lower);
+          } else if (!grid.within(axis, lower + 1)) {
+            bracket.on_bounds = true, bracket.t_hi = static_cast<float>(grid.face_hi[axis] - lower);
+          }
+          brackets.push_back(bracket);
+        }
+      }
+  if (brackets.size() == first) return;
+  SampleBlock block;
+  block.begin = static_cast<std::uint32_t>(first), block.end = static_cast<std::uint32_t>(brackets.size());
+  for (unsigned a = 0; a < 3; ++a) block.brick[a] = static_cast<std::uint16_t>(start[a] / 8);
+  part.blocks.push_back(block);
+}
+
+}  // namespace evenmesh
