@@ -112,6 +112,7 @@ Box find_bounds(const Field& field) {
   for (int round = 0; round < 40; ++round) {
     Box found;
     add_inside_points(field, box, 32, found);
+    const bool seen = !found.empty();
     add_possible_cells(field, box, shrink_depth, found);
     if (found.empty()) break;
     const Vec3 old_size = box.size(), size = found.size();
@@ -120,9 +121,9 @@ Box find_bounds(const Field& field) {
     box = intersection(Box{found.lo - cell, found.hi + cell}, Box{box.lo - cell, box.hi + cell});
     if (!rest) continue;
     Box inside;
-    add_inside_points(field, box, 128, inside);
-    if (!inside.empty()) return box;
-    break;
+    if (!seen) add_inside_points(field, box, 128, inside);
+    if (!seen && inside.empty()) break;
+    return box;
   }
   throw UnusableInput(
       "f < 0 nowhere found: the solid is empty, or too small; inside is where the expression is negative");

@@ -13,7 +13,7 @@ namespace evenmesh {
 
 /// Points that one operation handles before the next one starts: few enough for the registers to stay in the L1 cache,
 /// enough to make the choice of the operation cost nothing.
-inline constexpr std::size_t tape_chunk = 256;
+inline constexpr std::size_t tape_chunk = 512;
 
 /// dst = op(a, b). Registers: 0…2 the coordinates, then the constants, then the temporaries.
 struct Instruction {

@@ -17,18 +17,31 @@
 HWY_BEFORE_NAMESPACE();
 namespace evenmesh::HWY_NAMESPACE {
 
+/// Vectors that a loop takes at once, so that its own cost is small beside two loads and a store.
+constexpr std::size_t unroll = 4;
+
 /// dst[i] = f(a[i])
 template <typename F>
 HWY_INLINE void each(std::size_t n, float* dst, const float* a, F f) {
   const FloatTag d;
-  for (std::size_t i = 0; i < n; i += hn::Lanes(d)) hn::StoreU(f(hn::LoadU(d, a + i)), d, dst + i);
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t i = 0; i < n; i += unroll * lanes)
+    for (std::size_t k = 0; k < unroll; ++k) {
+      const std::size_t j = i + k * lanes;
+      hn::StoreU(f(hn::LoadU(d, a + j)), d, dst + j);
+    }
 }
 
 /// dst[i] = f(a[i], b[i])
 template <typename F>
 HWY_INLINE void each(std::size_t n, float* dst, const float* a, const float* b, F f) {
   const FloatTag d;
-  for (std::size_t i = 0; i < n; i += hn::Lanes(d)) hn::StoreU(f(hn::LoadU(d, a + i), hn::LoadU(d, b + i)), d, dst + i);
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t i = 0; i < n; i += unroll * lanes)
+    for (std::size_t k = 0; k < unroll; ++k) {
+      const std::size_t j = i + k * lanes;
+      hn::StoreU(f(hn::LoadU(d, a + j), hn::LoadU(d, b + j)), d, dst + j);
+    }
 }
 
 HWY_INLINE Floats lesser(Floats a, Floats b) {
@@ -46,7 +59,7 @@ HWY_INLINE Floats sign_of(Floats a) {
   return hn::IfThenElse(hn::Lt(a, zero), number(-1.0f), positive);
 }
 
-/// One operation on n values, n a multiple of the lanes.
+/// One operation on n values, n a multiple of `unroll` vectors.
 HWY_NOINLINE void run_values(const Instruction& c, std::size_t n, float* dst, const float* a, const float* b) {
   const Floats s = number(c.s), t = number(c.t);
   switch (c.op) {
@@ -251,12 +264,12 @@ HWY_NOINLINE void run_gradient(const Instruction& c, std::size_t n, const Planes
 
 /// All operations on up to one chunk of points. registers[r] is where register r lies.
 void run_chunk(const Tape& tape, std::size_t n, float* const* registers) {
-  const std::size_t lanes = hn::Lanes(FloatTag()), padded = (n + lanes - 1) / lanes * lanes;
+  const std::size_t step = unroll * hn::Lanes(FloatTag()), padded = (n + step - 1) / step * step;
   for (const Instruction& c : tape.code) run_values(c, padded, registers[c.dst], registers[c.a], registers[c.b]);
 }
 
 void run_chunk_gradient(const Tape& tape, std::size_t n, const Planes* registers, float* factors) {
-  const std::size_t lanes = hn::Lanes(FloatTag()), padded = (n + lanes - 1) / lanes * lanes;
+  const std::size_t step = unroll * hn::Lanes(FloatTag()), padded = (n + step - 1) / step * step;
   for (const Instruction& c : tape.code)
     run_gradient(c, padded, registers[c.dst], registers[c.a], registers[c.b], factors);
 }
