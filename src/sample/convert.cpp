@@ -153,7 +153,7 @@ std::vector<std::uint32_t> make_blocks(const std::vector<Piece>& pieces, SampleS
   for (std::uint32_t i = 0; i < pieces.size(); ++i) {
     if (i == 0 || pieces[i].brick() != pieces[i - 1].brick()) {
       first.push_back(i);
-      set.blocks.push_back({sum, sum, morton_decode(pieces[i].brick())});
+      set.blocks.push_back({sum, sum, morton_decode(pieces[i].brick()), {}});
     }
     sum += pieces[i].end - pieces[i].begin;
     set.blocks.back().end = sum;

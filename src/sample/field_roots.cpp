@@ -120,7 +120,8 @@ void RootFinder::first_guess(std::span<Bracket> brackets) {
     root.n[0] = dx_[i], root.n[1] = dy_[i], root.n[2] = dz_[i];
     narrow(brackets[i], root.t, f_[i]);
     const float newton = root.t - f_[i] / (root.n[brackets[i].code.axis()] * h), chord = chord_root(brackets[i]);
-    if (std::abs(newton - chord) < kAgreement && newton >= brackets[i].t_lo && newton <= brackets[i].t_hi)
+    const bool known = std::isfinite(brackets[i].f_lo) && std::isfinite(brackets[i].f_hi);
+    if (known && std::abs(newton - chord) < kAgreement && newton >= brackets[i].t_lo && newton <= brackets[i].t_hi)
       root.t = newton;
     else
       active_.push_back(i);

@@ -1,4 +1,155 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+
 #include "sample/field_parts.h"
+#include "sample/morton.h"
+
 namespace evenmesh {
-void fit_normals(SampleSet&, const Run&) {}
+namespace {
+
+constexpr int kReach = 2;                       // cells around a sample that are searched
+constexpr int kSide = brick_size + 2 * kReach;  // cells per side of a neighbourhood
+constexpr double kRadius = 2.0;                 // cells
+constexpr std::size_t kFewest = 4;              // samples that make a plane
+
+double sign_of(EdgeCode code) {
+  return code.lower_end_inside() ? 1.0 : -1.0;
+}
+
+// The samples of a block and of its neighbours' nearest cells, by cell; positions in cells from the block's center.
+class Neighbourhood {
+ public:
+  struct Point {
+    Vec3 at;
+    EdgeCode code;
+  };
+
+  explicit Neighbourhood(const SampleSet& set) : set_(set) {
+    for (const SampleBlock& b : set.blocks) codes_.push_back(morton_code(b.brick[0], b.brick[1], b.brick[2]));
+  }
+
+  void gather(const SampleBlock& center) {
+    points_.clear();
+    for (auto& plane : rows_) std::fill(std::begin(plane), std::end(plane), std::uint16_t{0});
+    for (int c = 0; c < 27; ++c) {
+      const int step[3] = {c % 3 - 1, c / 3 % 3 - 1, c / 9 - 1};
+      if (const SampleBlock* block = find(center, step)) add(*block, step);
+    }
+  }
+
+  // Calls use(point) for the samples on edges that start in the cells around (i, j, k) of the block.
+  template <typename Use>
+  void around(const EdgeCode& code, const Use& use) const {
+    const int k = static_cast<int>(code.k());
+    for (int i = static_cast<int>(code.i()); i <= static_cast<int>(code.i()) + 2 * kReach; ++i)
+      for (int j = static_cast<int>(code.j()); j <= static_cast<int>(code.j()) + 2 * kReach; ++j)
+        for (unsigned bits = rows_[i][j] >> k & ((2u << 2 * kReach) - 1); bits != 0; bits &= bits - 1) {
+          const Cell& cell = cells_[i][j][k + std::countr_zero(bits)];
+          for (unsigned p = 0; p < cell.count; ++p) use(points_[cell.point[p]]);
+        }
+  }
+
+ private:
+  struct Cell {
+    unsigned count;
+    std::uint32_t point[3];
+  };
+
+  const SampleBlock* find(const SampleBlock& center, const int (&step)[3]) const {
+    int brick[3];
+    for (std::size_t a = 0; a < 3; ++a) {
+      brick[a] = center.brick[a] + step[a];
+      if (brick[a] < 0) return nullptr;
+    }
+    const std::uint64_t code =
+        morton_code(static_cast<unsigned>(brick[0]), static_cast<unsigned>(brick[1]), static_cast<unsigned>(brick[2]));
+    const auto at = std::lower_bound(codes_.begin(), codes_.end(), code);
+    return at != codes_.end() && *at == code ? &set_.blocks[static_cast<std::size_t>(at - codes_.begin())] : nullptr;
+  }
+
+  void add(const SampleBlock& block, const int (&step)[3]) {
+    const double per_cell = 1.0 / set_.grid.spacing;
+    for (std::uint32_t s = block.begin; s < block.end; ++s) {
+      const EdgeCode code = set_.edge[s];
+      const int at[3] = {static_cast<int>(code.i()), static_cast<int>(code.j()), static_cast<int>(code.k())};
+      int cell[3];
+      bool near = true;
+      for (int a = 0; a < 3; ++a) {
+        cell[a] = at[a] + step[a] * static_cast<int>(brick_size) + kReach;
+        near = near && cell[a] >= 0 && cell[a] < kSide;
+      }
+      if (!near) continue;
+      std::uint16_t& row = rows_[cell[0]][cell[1]];
+      Cell& c = cells_[cell[0]][cell[1]][cell[2]];
+      if ((row >> cell[2] & 1) == 0) c.count = 0;
+      row = static_cast<std::uint16_t>(row | 1u << cell[2]);
+      c.point[c.count++] = static_cast<std::uint32_t>(points_.size());
+      const double brick = brick_size;
+      points_.push_back({Vec3{set_.x[s] * per_cell + step[0] * brick, set_.y[s] * per_cell + step[1] * brick,
+                              set_.z[s] * per_cell + step[2] * brick},
+                         code});
+    }
+  }
+
+  const SampleSet& set_;
+  std::vector<std::uint64_t> codes_;
+  std::vector<Point> points_;
+  std::uint16_t rows_[kSide][kSide];
+  Cell cells_[kSide][kSide][kSide];
+};
+
+// Plane through the samples within kRadius, each counted the less the farther it is. Samples that cross the same axis
+// the other way belong to another sheet.
+Vec3 fitted_normal(const Neighbourhood& near, const Vec3& at, EdgeCode code) {
+  Vec3 outward, mean;
+  double sum = 0;
+  std::size_t count = 0;
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  near.around(code, [&](const Neighbourhood::Point& p) {
+    const Vec3 d = p.at - at;
+    const double w = 1.0 - squared_norm(d) / (kRadius * kRadius);
+    if (w <= 0 || (p.code.axis() == code.axis() && p.code.lower_end_inside() != code.lower_end_inside())) return;
+    outward[static_cast<int>(p.code.axis())] += w * sign_of(p.code);
+    mean += w * d, sum += w, ++count;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) moments(r, c) += w * d[r] * d[c];
+  });
+  Vec3 normal = normalized(outward);
+  if (count >= kFewest) {
+    mean *= 1 / sum;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) moments(r, c) = moments(r, c) / sum - mean[r] * mean[c];
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
+    const Eigen::Vector3d v = solver.eigenvectors().col(0);
+    const Vec3 plane{v[0], v[1], v[2]};
+    // Samples along one line say nothing of a plane.
+    if (solver.eigenvalues()[1] > 1e-3) normal = dot(plane, outward) < 0 ? -plane : plane;
+  }
+  // The normal never points against the sample's own change of sign.
+  const int axis = static_cast<int>(code.axis());
+  if (normal[axis] * sign_of(code) < 1e-3) normal[axis] = 1e-3 * sign_of(code);
+  return normalized(normal);
+}
+
+}  // namespace
+
+void fit_normals(SampleSet& set, const Run& run) {
+  const double h = set.grid.spacing;
+  parallel_for(run, set.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
+    Neighbourhood near(set);
+    for (std::size_t b = begin; b < end; ++b) {
+      const SampleBlock& block = set.blocks[b];
+      near.gather(block);
+      for (std::uint32_t s = block.begin; s < block.end; ++s) {
+        const Vec3 n = fitted_normal(near, Vec3{set.x[s], set.y[s], set.z[s]} / h, set.edge[s]);
+        set.normal[s] = pack_normal(n);
+        set.area[s] = static_cast<float>(h * h / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)));
+      }
+    }
+  });
+}
+
 }  // namespace evenmesh

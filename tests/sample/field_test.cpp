@@ -80,8 +80,10 @@ TEST(SampleField, RootsOfAwkwardFunctions) {
                              field_shape(infinite, box), field_shape(undefined, box)}) {
     const SampleSet set = sampled(shape, 40);
     expect_one_sign_grid(set);
+    double worst = 0;
     for (const SampleBlock& b : set.blocks)
-      for (std::size_t i = b.begin; i < b.end; ++i) EXPECT_NEAR(norm(position(set, b, i)), 1, 1e-3 * set.grid.spacing);
+      for (std::size_t i = b.begin; i < b.end; ++i) worst = std::max(worst, std::abs(norm(position(set, b, i)) - 1));
+    EXPECT_LT(worst, 1e-3 * set.grid.spacing);
   }
 }
 
