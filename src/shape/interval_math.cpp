@@ -21,11 +21,11 @@ constexpr Enclosure anything{-infinity, infinity, true};
 /// Ends moved outward by `share` of themselves and by `distance`; ends beyond the floats become infinite.
 /// Rounding is monotonic, so that zero as an end stays zero.
 Enclosure widened(double lo, double hi, bool may_be_nan, double share = rounding, double distance = 0) {
-  lo -= std::abs(lo) * share + distance;
-  hi += std::abs(hi) * share + distance;
-  if (!(lo >= -largest_float)) lo = -infinity;
-  if (!(hi <= largest_float)) hi = infinity;
-  return {std::min(lo, largest_float), std::max(hi, -largest_float), may_be_nan};
+  const double below = lo - (std::abs(lo) * share + distance), above = hi + (std::abs(hi) * share + distance);
+  // An end that is infinite towards the inside (lo = ∞) gives ∞ − ∞ here.
+  const double wide_lo = below >= -largest_float ? std::min(below, largest_float) : lo > 0 ? largest_float : -infinity;
+  const double wide_hi = above <= largest_float ? std::max(above, -largest_float) : hi < 0 ? -largest_float : infinity;
+  return {wide_lo, wide_hi, may_be_nan};
 }
 
 bool infinite(const Enclosure& a) {

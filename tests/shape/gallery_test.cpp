@@ -1,0 +1,290 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "evenmesh/error.h"
+#include "shape/bounds.h"
+#include "shape/fields.h"
+
+namespace evenmesh {
+namespace {
+
+using testing::parse;
+using testing::Points;
+using testing::random_points;
+using testing::value_at;
+
+bool inside(const Field& field, const Vec3& p) {
+  return value_at(field, p) < 0;
+}
+
+TEST(Gallery, HasEveryShapeOnce) {
+  std::set<std::string_view> names;
+  for (const GalleryEntry& entry : gallery()) {
+    EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
+    EXPECT_FALSE(entry.formula.empty());
+    EXPECT_EQ(gallery_shape(entry.name).name, entry.name);
+  }
+  for (const char* name :
+       {"sphere", "torus",     "thin-torus",  "rounded-box", "cube",   "thin-plate",   "touching-balls",
+        "trig",   "octic",     "octic-balls", "klein",       "tangle", "heart",        "barth",
+        "gyroid", "schwarz-p", "menger-2",    "menger-3",    "julia",  "mandelbulb-7", "mandelbulb-8"})
+    EXPECT_TRUE(names.contains(name)) << name;
+}
+
+TEST(Gallery, SuggestsNames) {
+  const auto message = [](std::string_view name) -> std::string {
+    try {
+      gallery_shape(name);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message("octik").find("did you mean octic?"), std::string::npos);
+  EXPECT_NE(message("mandelbulb").find("mandelbulb-7 or mandelbulb-8"), std::string::npos);
+  EXPECT_NE(message("quux").find("sphere, torus"), std::string::npos);
+}
+
+/// Every solid lies within its box: the outer layer of a grid around it is outside.
+TEST(Gallery, SolidsLieWithinTheirBounds) {
+  for (const GalleryEntry& entry : gallery()) {
+    const Shape shape = gallery_shape(entry.name);
+    const auto field = testing::field_of(shape);
+    bool found = false;
+    const Points all = random_points(shape.bounds, 20'000, 1);
+    for (const float value : testing::values_at(*field, all)) found = found || value < 0;
+    EXPECT_TRUE(found) << entry.name << " has an inside";
+    for (int side = 0; side < 6; ++side) {
+      Box face = shape.bounds;
+      (side % 2 == 0 ? face.lo : face.hi)[side / 2] = (side % 2 == 0 ? face.hi : face.lo)[side / 2];
+      for (const float value : testing::values_at(*field, random_points(face, 2000, 2)))
+        EXPECT_GE(value, 0) << entry.name << " reaches side " << side;
+    }
+  }
+}
+
+TEST(Gallery, FoundBoundsHoldTheSolid) {
+  for (const GalleryEntry& entry : gallery()) {
+    const Shape shape = gallery_shape(entry.name);
+    const auto field = testing::field_of(shape);
+    const Box box = find_bounds(*field);
+    EXPECT_LT(box.longest_side(), 1.2 * shape.bounds.longest_side()) << entry.name;
+    const Points points = random_points(shape.bounds, 20'000, 3);
+    const std::vector<float> values = testing::values_at(*field, points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_TRUE(values[i] >= 0 || box.contains(points.at(i))) << entry.name;
+  }
+}
+
+TEST(Gallery, IntervalsEnclose) {
+  Random random(5);
+  for (const GalleryEntry& entry : gallery()) {
+    const Shape shape = gallery_shape(entry.name);
+    const auto field = testing::field_of(shape);
+    int decided = 0;
+    for (int round = 0; round < 60; ++round) {
+      const Box box = testing::random_box(shape.bounds, random);
+      const Interval interval = field->evaluate(box);
+      decided += interval.lo >= 0 || interval.hi < 0 ? 1 : 0;
+      const std::vector<float> values = testing::values_at(*field, random_points(box, 60, random.bits()));
+      for (const float value : values) {
+        EXPECT_GE(value, interval.lo) << entry.name;
+        EXPECT_LE(value, interval.hi) << entry.name;
+      }
+    }
+    EXPECT_GT(decided, 0) << entry.name << ": intervals never prune";
+  }
+}
+
+/// At points near the surface (where it matters) the gradient predicts the value a small step away.
+TEST(Gallery, GradientsMatchDifferences) {
+  for (const GalleryEntry& entry : gallery()) {
+    if (entry.fractal) continue;
+    const Shape shape = gallery_shape(entry.name);
+    const auto field = testing::field_of(shape);
+    const Points points = random_points(shape.bounds, 2000, 7);
+    const testing::Gradients gradients = testing::gradients_at(*field, points);
+    int compared = 0, apart = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Vec3 difference;
+      const double step = 1e-6;
+      for (int axis = 0; axis < 3; ++axis) {
+        Vec3 above = points.at(i), below = above;
+        above[axis] += step, below[axis] -= step;
+        difference[axis] = (value_at(*field, above) - value_at(*field, below)) / (2 * step);
+      }
+      ++compared;
+      apart += norm(gradients.at(i) - difference) > 1e-3 * (1 + norm(difference)) ? 1 : 0;
+    }
+    EXPECT_LE(apart, compared / 100) << entry.name;
+  }
+}
+
+TEST(Gallery, SharpSolidsHaveFaceNormals) {
+  for (const char* name : {"cube", "thin-plate", "menger-2", "menger-3"}) {
+    const Shape shape = gallery_shape(name);
+    const Points points = random_points(shape.bounds, 1000, 9);
+    const testing::Gradients gradients = testing::gradients_at(*shape.field(), points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3 g = gradients.at(i);
+      EXPECT_NEAR(std::abs(g.x) + std::abs(g.y) + std::abs(g.z), 1, 1e-5) << name;
+      EXPECT_NEAR(norm(g), 1, 1e-5) << name;
+    }
+  }
+}
+
+/// The sponge by its digits: a point is out when two of its ternary digits of one place are 1.
+bool in_sponge(Vec3 p, int level) {
+  for (int a = 0; a < 3; ++a)
+    if (p[a] < 0 || p[a] > 1) return false;
+  for (int l = 0; l < level; ++l) {
+    int middle = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double digit = std::floor(3 * p[a]);
+      middle += digit == 1 ? 1 : 0;
+      p[a] = 3 * p[a] - digit;
+    }
+    if (middle >= 2) return false;
+  }
+  return true;
+}
+
+TEST(Gallery, SpongesAreSponges) {
+  for (const int level : {2, 3}) {
+    const Shape shape = gallery_shape("menger-" + std::to_string(level));
+    const Points points = random_points(shape.bounds, 20'000, 11);
+    const std::vector<float> values = testing::values_at(*shape.field(), points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (std::abs(values[i]) < 1e-6) continue;
+      EXPECT_EQ(values[i] < 0, in_sponge(points.at(i), level));
+    }
+  }
+}
+
+/// Fractals by their definition, in double precision.
+bool in_julia(const Vec3& p) {
+  double a = p.x, b = p.y, c = p.z, d = 0;
+  for (int k = 0; k < 16; ++k) {
+    const double n = a * a - b * b - c * c - d * d;
+    b = 2 * a * b + 0.2, c = 2 * a * c + 0.3, d = 2 * a * d, a = n + 0.1;
+    if (a * a + b * b + c * c + d * d > 1e8) return false;
+  }
+  return a * a + b * b + c * c + d * d < 4;
+}
+
+bool in_bulb(const Vec3& p, int degree) {
+  Vec3 q = p;
+  for (int k = 0; k < 12; ++k) {
+    const double r = norm(q), theta = degree * std::atan2(std::hypot(q.x, q.y), q.z),
+                 phi = degree * std::atan2(q.y, q.x);
+    q = p +
+        std::pow(r, degree) * Vec3{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+    if (norm(q) > 50) return false;
+  }
+  return norm(q) < 2;
+}
+
+TEST(Gallery, FractalsFollowTheirDefinition) {
+  const Points points = random_points({{-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}}, 4000, 13);
+  const auto count_apart = [&](const char* name, const auto& contains) {
+    const Shape shape = gallery_shape(name);
+    const std::vector<float> values = testing::values_at(*shape.field(), points);
+    int apart = 0, within = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      within += values[i] < 0 ? 1 : 0;
+      apart += (values[i] < 0) != contains(points.at(i)) ? 1 : 0;
+    }
+    EXPECT_GT(within, 200) << name;
+    EXPECT_LT(apart, 20) << name << ": only points very near the surface may differ";
+  };
+  count_apart("julia", in_julia);
+  count_apart("mandelbulb-7", [](const Vec3& p) { return in_bulb(p, 7); });
+  count_apart("mandelbulb-8", [](const Vec3& p) { return in_bulb(p, 8); });
+}
+
+/// Distance estimates change little from step to step and never jump through zero: root finding needs both.
+TEST(Gallery, FractalsAreContinuousOutside) {
+  for (const char* name : {"julia", "mandelbulb-8"}) {
+    const Shape shape = gallery_shape(name);
+    Points ray(2000);
+    for (std::size_t i = 0; i < ray.size(); ++i) ray.x[i] = 1.1f + 1e-4f * static_cast<float>(i), ray.y[i] = 0.4f;
+    const std::vector<float> values = testing::values_at(*shape.field(), ray);
+    for (std::size_t i = 1; i < values.size(); ++i)
+      EXPECT_LT(std::abs(values[i] - values[i - 1]), 2e-3 + 0.05 * std::abs(values[i])) << name << " " << i;
+  }
+}
+
+TEST(Bounds, FindsSolidsWhereverTheyAre) {
+  const auto check = [](const char* formula, const Box& expected) {
+    const Box box = find_bounds(*parse(formula));
+    for (int axis = 0; axis < 3; ++axis) {
+      const double side = expected.hi[axis] - expected.lo[axis];
+      EXPECT_NEAR(box.lo[axis], expected.lo[axis], 0.15 * side) << formula;
+      EXPECT_NEAR(box.hi[axis], expected.hi[axis], 0.15 * side) << formula;
+      EXPECT_LE(box.lo[axis], expected.lo[axis]) << formula;
+      EXPECT_GE(box.hi[axis], expected.hi[axis]) << formula;
+    }
+  };
+  check("r - 1", {{-1, -1, -1}, {1, 1, 1}});
+  check("x^2+y^2+z^2 = 1e-6", {{-1e-3, -1e-3, -1e-3}, {1e-3, 1e-3, 1e-3}});
+  check("(x-1000)^2+y^2+z^2-1", {{999, -1, -1}, {1001, 1, 1}});
+  check("x^2/10000+y^2+z^2-1", {{-100, -1, -1}, {100, 1, 1}});
+  check("0.5 - exp(-x^2-y^2-z^2)", {{-0.8325, -0.8325, -0.8325}, {0.8325, 0.8325, 0.8325}});
+}
+
+TEST(Bounds, SaysWhyThereAreNone) {
+  const auto message = [](const Field& field) -> std::string {
+    try {
+      find_bounds(field);
+    } catch (const UnusableInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message(*parse("z")).find("--bounds"), std::string::npos);
+  EXPECT_EQ(message(*parse("z")).find("flip"), std::string::npos);
+  EXPECT_NE(message(*parse("cos(x)+cos(y)+cos(z)")).find("bounded"), std::string::npos);
+  EXPECT_NE(message(*parse("1-x^2-y^2-z^2")).find("flip the sign"), std::string::npos);
+  EXPECT_NE(message(*parse("1+r")).find("nowhere"), std::string::npos);
+  EXPECT_NE(message(*parse("(r^2-1)^2")).find("nowhere"), std::string::npos);
+  EXPECT_NE(message(*parse("1/0")).find("nowhere"), std::string::npos);
+  const Shape indicator = shape_from_indicator([](const Vec3&) { return true; }, {{0, 0, 0}, {1, 1, 1}});
+  EXPECT_NE(message(*indicator.field()).find("--bounds"), std::string::npos);
+}
+
+TEST(Shape, ChecksMeshes) {
+  Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 9, 9}}, {{0, 1, 2}}};
+  const Shape shape = shape_from_mesh(mesh, "corner");
+  EXPECT_EQ(shape.bounds, (Box{{0, 0, 0}, {1, 1, 0}})) << "unused vertices do not count";
+  ASSERT_NE(shape.mesh(), nullptr);
+  EXPECT_EQ(shape.field(), nullptr);
+  EXPECT_THROW(shape_from_mesh(Mesh{}), UnusableInput);
+  Mesh wrong = mesh;
+  wrong.triangles[0][2] = 4;
+  EXPECT_THROW(shape_from_mesh(wrong), InvalidInput);
+  wrong = mesh;
+  wrong.vertices[1].y = std::nan("");
+  EXPECT_THROW(shape_from_mesh(wrong), InvalidInput);
+}
+
+TEST(Shape, ChecksBounds) {
+  EXPECT_TRUE(shape_from_expression("r-1").bounds.empty());
+  EXPECT_TRUE(shape_from_expression("z", {}, {{-1, -1, -1}, {1, 1, 1}}).capped_by_bounds);
+  EXPECT_THROW(shape_from_expression("z", {}, {{1, 1, 1}, {-1, -1, -1}}), InvalidInput);
+  EXPECT_THROW(shape_from_indicator([](const Vec3&) { return true; }, {}), InvalidInput);
+  EXPECT_THROW(shape_from_indicator({}, {{0, 0, 0}, {1, 1, 1}}), InvalidInput);
+}
+
+TEST(Shape, IndicatorsAreMinusOneAndOne) {
+  const Shape shape = shape_from_indicator([](const Vec3& p) { return p.x < 0.5; }, {{0, 0, 0}, {1, 1, 1}});
+  const Points points = random_points(shape.bounds, 100, 1);
+  const std::vector<float> values = testing::values_at(*shape.field(), points);
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(values[i], points.x[i] < 0.5 ? -1.0f : 1.0f);
+  EXPECT_FALSE(shape.field()->has_gradient());
+}
+
+}  // namespace
+}  // namespace evenmesh
