@@ -1,0 +1,31 @@
+#pragma once
+/// Whole files in memory.
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace evenmesh {
+
+/// Bytes that are not zeroed before they are read into.
+struct FileBytes {
+  std::unique_ptr<char[]> data;
+  std::size_t size = 0;
+  std::string_view view() const { return {data.get(), size}; }
+};
+
+/// Reads a whole file, pipe or device; "-" is standard input.
+///
+/// Guarantee: the bytes are a copy, so a file that shrinks meanwhile does no harm. Cost: O(bytes) time and memory.
+/// @throws UnusableInput  one sentence with the file's name: it does not exist, is a directory, may not be read, …
+FileBytes load_file(const std::filesystem::path& path);
+
+/// The same as a string.
+std::string read_bytes(const std::filesystem::path& path);
+
+/// What messages call a path: itself, or "standard input" for "-".
+std::string name_of_input(const std::filesystem::path& path);
+
+}  // namespace evenmesh
