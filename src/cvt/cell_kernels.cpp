@@ -46,57 +46,51 @@ HWY_INLINE float sum_lanes(D d, V v) {
   return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
 }
 
-struct Loaded {
-  V x, y, z, w;
-};
-/// Samples i…; lanes behind the block's end get weight and coordinates zero.
-HWY_INLINE Loaded load(D d, const BlockView& b, std::size_t i) {
-  const std::size_t left = b.samples - i;
-  if (left >= hn::Lanes(d)) return {hn::LoadU(d, b.x + i), hn::LoadU(d, b.y + i), hn::LoadU(d, b.z + i), hn::LoadU(d, b.area + i)};
-  const auto mask = hn::FirstN(d, left);
-  return {hn::MaskedLoad(mask, d, b.x + i), hn::MaskedLoad(mask, d, b.y + i), hn::MaskedLoad(mask, d, b.z + i),
-          hn::MaskedLoad(mask, d, b.area + i)};
+/// Values i… of an array that ends at `end`; lanes behind the end are zero.
+HWY_INLINE V load(D d, const float* from, std::size_t i, std::size_t end) {
+  return end - i >= hn::Lanes(d) ? hn::LoadU(d, from + i) : hn::MaskedLoad(hn::FirstN(d, end - i), d, from + i);
 }
 
-double EvaluateBlock(const BlockView& b, Footprint footprint, const BlockScratch& scratch, const BlockSums& sums) {
+double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const BlockSums& sums) {
   const D d;
+  const hn::RebindToSigned<D> di;
   const std::size_t lanes = hn::Lanes(d);
   float* const* t = scratch.array;
+  const float* const seed[3] = {b.seed_x, b.seed_y, b.seed_z};
   V energy = hn::Zero(d);
   // First pass: the two nearest seeds of each sample, and what each of them gets of its footprint. The profile of a
   // footprint across the bisector is 3/(4R)·(1 − t²/R²), the projection of an isotropic density: F and its gradient agree.
   for (std::size_t i = 0; i < b.samples; i += lanes) {
-    const Loaded s = load(d, b, i);
-    const Nearest2 n = nearest_two(d, b, s.x, s.y, s.z);
-    const auto to_int = hn::RebindToSigned<D>();
-    const auto first = hn::ConvertTo(to_int, n.first), second = hn::ConvertTo(to_int, n.second);
-    const V dx = hn::Sub(hn::GatherIndex(d, b.seed_x, second), hn::GatherIndex(d, b.seed_x, first));
-    const V dy = hn::Sub(hn::GatherIndex(d, b.seed_y, second), hn::GatherIndex(d, b.seed_y, first));
-    const V dz = hn::Sub(hn::GatherIndex(d, b.seed_z, second), hn::GatherIndex(d, b.seed_z, first));
-    const V length2 = hn::Max(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), hn::Set(d, 1e-30f));
+    const V p[3] = {load(d, b.x, i, b.samples), load(d, b.y, i, b.samples), load(d, b.z, i, b.samples)};
+    const V w = load(d, b.area, i, b.samples);
+    const Nearest2 n = nearest_two(d, b, p[0], p[1], p[2]);
+    const auto first = hn::ConvertTo(di, n.first), second = hn::ConvertTo(di, n.second);
+    V apart[3], length2 = hn::Set(d, 1e-30f);
+    for (int a = 0; a < 3; ++a) {
+      apart[a] = hn::Sub(hn::GatherIndex(d, seed[a], second), hn::GatherIndex(d, seed[a], first));
+      length2 = hn::Add(length2, hn::Mul(apart[a], apart[a]));
+    }
     // q = R / |s2 − s1|, u = (distance to the bisector) / R
-    const V q = hn::Max(hn::Mul(hn::Sqrt(hn::Div(s.w, length2)), hn::Set(d, footprint.radius)), hn::Set(d, 1e-30f));
-    const V u = hn::Min(hn::Div(hn::Mul(hn::Set(d, 0.5f), hn::Sub(n.distance_second, n.distance_first)), hn::Mul(length2, q)),
-                        hn::Set(d, 1.0f));
-    const V u2 = hn::Mul(u, u);
-    const V rest = hn::Sub(hn::Set(d, 1.0f), u2);
+    const V q = hn::Div(hn::Set(d, b.footprint), hn::Sqrt(hn::Mul(hn::Max(w, hn::Set(d, b.least_area)), length2)));
+    const V reach = hn::Mul(length2, q);
+    const V u = hn::Min(hn::Div(hn::Mul(hn::Set(d, 0.5f), hn::Sub(n.distance_second, n.distance_first)), reach), hn::Set(d, 1.0f));
+    const V u2 = hn::Mul(u, u), rest = hn::Sub(hn::Set(d, 1.0f), u2);
     const V share = hn::Mul(hn::Set(d, 0.25f), hn::Add(hn::Sub(hn::Set(d, 2.0f), hn::Mul(hn::Set(d, 3.0f), u)), hn::Mul(u, u2)));
     const V moment = hn::Mul(hn::Set(d, 0.1875f), hn::Mul(rest, rest));  // of the part beyond the bisector, in units of R
-    const V w2 = hn::Mul(s.w, share), w1 = hn::Sub(s.w, w2);
-    const V shift = hn::Mul(s.w, hn::Mul(moment, q));
-    const V x2 = hn::Add(hn::Mul(s.x, s.x), hn::Add(hn::Mul(s.y, s.y), hn::Mul(s.z, s.z)));
-    const V gain = hn::Mul(hn::Mul(hn::Set(d, 2.0f), hn::Mul(length2, q)), hn::Sub(moment, hn::Mul(u, share)));
-    energy = hn::Add(energy, hn::Mul(s.w, hn::Sub(hn::Add(n.distance_first, x2), gain)));
+    const V w2 = hn::Mul(w, share), w1 = hn::Sub(w, w2);
+    const V shift = hn::Mul(w, hn::Mul(moment, q));
+    const V p2 = hn::Add(hn::Mul(p[0], p[0]), hn::Add(hn::Mul(p[1], p[1]), hn::Mul(p[2], p[2])));
+    const V gain = hn::Mul(hn::Add(reach, reach), hn::Sub(moment, hn::Mul(u, share)));
+    energy = hn::Add(energy, hn::Mul(w, hn::Sub(hn::Add(n.distance_first, p2), gain)));
     hn::Store(n.first, d, t[0] + i);
     hn::Store(n.second, d, t[1] + i);
     hn::Store(w1, d, t[2] + i);
     hn::Store(w2, d, t[3] + i);
-    hn::Store(hn::Sub(hn::Mul(w1, s.x), hn::Mul(shift, dx)), d, t[4] + i);
-    hn::Store(hn::Sub(hn::Mul(w1, s.y), hn::Mul(shift, dy)), d, t[5] + i);
-    hn::Store(hn::Sub(hn::Mul(w1, s.z), hn::Mul(shift, dz)), d, t[6] + i);
-    hn::Store(hn::Add(hn::Mul(w2, s.x), hn::Mul(shift, dx)), d, t[7] + i);
-    hn::Store(hn::Add(hn::Mul(w2, s.y), hn::Mul(shift, dy)), d, t[8] + i);
-    hn::Store(hn::Add(hn::Mul(w2, s.z), hn::Mul(shift, dz)), d, t[9] + i);
+    for (int a = 0; a < 3; ++a) {
+      const V move = hn::Mul(shift, apart[a]);
+      hn::Store(hn::Sub(hn::Mul(w1, p[a]), move), d, t[4 + a] + i);
+      hn::Store(hn::Add(hn::Mul(w2, p[a]), move), d, t[7 + a] + i);
+    }
   }
   // Second pass: sums per candidate, without scattering.
   for (std::size_t c = 0; c < b.seeds; ++c) {
@@ -125,13 +119,13 @@ void NearestInBlock(const BlockView& b, std::uint32_t* nearest) {
   const auto to_int = hn::RebindToSigned<D>();
   HWY_ALIGN std::int32_t lane[8];
   for (std::size_t i = 0; i < b.samples; i += lanes) {
-    const Loaded s = load(d, b, i);
+    const V x = load(d, b.x, i, b.samples), y = load(d, b.y, i, b.samples), z = load(d, b.z, i, b.samples);
     V best = hn::Set(d, 1e30f), index = hn::Zero(d);
     for (std::size_t c = 0; c < b.seeds; ++c) {
       const float sx = b.seed_x[c], sy = b.seed_y[c], sz = b.seed_z[c];
       const V g = hn::Sub(hn::Set(d, sx * sx + sy * sy + sz * sz),
-                          hn::Add(hn::Add(hn::Mul(s.x, hn::Set(d, 2 * sx)), hn::Mul(s.y, hn::Set(d, 2 * sy))),
-                                  hn::Mul(s.z, hn::Set(d, 2 * sz))));
+                          hn::Add(hn::Add(hn::Mul(x, hn::Set(d, 2 * sx)), hn::Mul(y, hn::Set(d, 2 * sy))),
+                                  hn::Mul(z, hn::Set(d, 2 * sz))));
       index = hn::IfThenElse(hn::Lt(g, best), hn::Set(d, static_cast<float>(c)), index);
       best = hn::Min(best, g);
     }
@@ -145,8 +139,7 @@ void NearestPairInBlock(const BlockView& b, std::uint32_t* first, std::uint32_t*
   const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN float index1[8], index2[8], gap[8];
   for (std::size_t i = 0; i < b.samples; i += lanes) {
-    const Loaded s = load(d, b, i);
-    const Nearest2 n = nearest_two(d, b, s.x, s.y, s.z);
+    const Nearest2 n = nearest_two(d, b, load(d, b.x, i, b.samples), load(d, b.y, i, b.samples), load(d, b.z, i, b.samples));
     hn::Store(n.first, d, index1);
     hn::Store(n.second, d, index2);
     hn::Store(hn::Sub(n.distance_second, n.distance_first), d, gap);
@@ -170,8 +163,8 @@ HWY_EXPORT(EvaluateBlock);
 HWY_EXPORT(NearestInBlock);
 HWY_EXPORT(NearestPairInBlock);
 
-double evaluate_block(const BlockView& block, Footprint footprint, const BlockScratch& scratch, const BlockSums& sums) {
-  return HWY_DYNAMIC_DISPATCH(EvaluateBlock)(block, footprint, scratch, sums);
+double evaluate_block(const BlockView& block, const BlockScratch& scratch, const BlockSums& sums) {
+  return HWY_DYNAMIC_DISPATCH(EvaluateBlock)(block, scratch, sums);
 }
 void nearest_in_block(const BlockView& block, std::uint32_t* nearest) {
   HWY_DYNAMIC_DISPATCH(NearestInBlock)(block, nearest);

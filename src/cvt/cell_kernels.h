@@ -9,14 +9,11 @@ namespace evenmesh {
 /// Samples of a block and its candidate seeds, all relative to the block's centre. At least one seed.
 struct BlockView {
   const float *x, *y, *z, *area;
+  float footprint;                     ///< a sample of area w has a footprint of radius footprint / √max(w, least_area)
+  float least_area;
   std::size_t samples;
   const float *seed_x, *seed_y, *seed_z;
   std::size_t seeds;
-};
-
-/// Width of a footprint: radius of the disc over the square root of its area.
-struct Footprint {
-  float radius;
 };
 
 /// Scratch for the largest block: arrays of `capacity` floats, 64-byte aligned, in one allocation.
@@ -31,7 +28,7 @@ struct BlockSums {
 };
 
 /// Mass and first moments about each seed, footprints cut by bisectors; returns the block's energy.
-double evaluate_block(const BlockView& block, Footprint footprint, const BlockScratch& scratch, const BlockSums& sums);
+double evaluate_block(const BlockView& block, const BlockScratch& scratch, const BlockSums& sums);
 
 /// Position in the candidate list of the nearest seed of every sample, first one on ties.
 void nearest_in_block(const BlockView& block, std::uint32_t* nearest);

@@ -13,9 +13,11 @@
 namespace evenmesh {
 namespace {
 
-/// Radius of a footprint over the square root of its area. A square of that area has the same variance at 0.645; the
-/// samples of three ray directions lie less evenly than a square grid, and a wider footprint evens them out (docs/cvt.md).
-constexpr Footprint footprint{0.85f};
+/// Radius of a footprint in units of the spacing of its axis' samples on the surface, h/√|n_a|. A square of that side has
+/// the same variance at 0.645; wider ones blur short edges of cells, narrower ones leave noise (docs/cvt.md).
+constexpr double footprint_radius = 0.7;
+/// Rays that graze the surface have long footprints and little weight; the radius does not grow below this |n_a|.
+constexpr double least_slope = 0.25;
 
 /// Seeds of one block in single precision, and its sums.
 struct Workspace {
@@ -44,13 +46,15 @@ struct CellEvaluator::State {
   const SampleSet& samples;
   Run& run;
   CandidateLists lists;
+  float footprint, least_area;
   std::size_t largest_block = 0;
   std::vector<Vec3> last_seeds;
   std::vector<double> block_energy;
   tbb::enumerable_thread_specific<FixedSums> fixed;
   tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces;
 
-  State(const SampleSet& s, Run& r) : samples(s), run(r), lists(s, r) {
+  State(const SampleSet& s, Run& r) : samples(s), run(r), lists(s, r), footprint(static_cast<float>(footprint_radius * s.grid.spacing * s.grid.spacing)),
+        least_area(static_cast<float>(least_slope * s.grid.spacing * s.grid.spacing)) {
     for (const SampleBlock& b : s.blocks) largest_block = std::max<std::size_t>(largest_block, b.end - b.begin);
     block_energy.resize(s.blocks.size());
   }
@@ -86,8 +90,17 @@ struct CellEvaluator::State {
           s[c] = static_cast<float>(offset.x), s[n + c] = static_cast<float>(offset.y), s[2 * n + c] = static_cast<float>(offset.z);
         }
         const std::size_t at = block.begin;
-        const BlockView view{samples.x.data() + at, samples.y.data() + at,    samples.z.data() + at, samples.area.data() + at,
-                             block.end - at,        s, s + n, s + 2 * n, n};
+        const BlockView view{.x = samples.x.data() + at,
+                             .y = samples.y.data() + at,
+                             .z = samples.z.data() + at,
+                             .area = samples.area.data() + at,
+                             .footprint = footprint,
+                             .least_area = least_area,
+                             .samples = block.end - at,
+                             .seed_x = s,
+                             .seed_y = s + n,
+                             .seed_z = s + 2 * n,
+                             .seeds = n};
         work(b, view, candidates, *workspace);
       }
     });
@@ -113,7 +126,7 @@ void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
     const std::size_t n = candidates.size();
     work.sums.resize(4 * n);
     const BlockSums out{work.sums.data(), work.sums.data() + n, work.sums.data() + 2 * n, work.sums.data() + 3 * n};
-    state.block_energy[b] = evaluate_block(view, footprint, work.scratch, out);
+    state.block_energy[b] = evaluate_block(view, work.scratch, out);
     const double to_mass = 1 / mass_unit, to_moment = 1 / moment_unit;
     for (std::size_t c = 0; c < n; ++c) {
       auto& cell = fixed.cell[candidates[c]];

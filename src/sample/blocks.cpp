@@ -1,5 +1,6 @@
 #include "sample/blocks.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "evenmesh/error.h"
@@ -31,6 +32,19 @@ void resize_samples(SampleSet& set, std::size_t count, bool with_edges, bool wit
         break;
       default:
         set.source.resize(with_sources ? count : 0);
+    }
+  });
+}
+
+void mark_axes(SampleSet& set, const Run& run) {
+  parallel_for(run, set.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      SampleBlock& block = set.blocks[b];
+      for (unsigned a = 1; a < 3; ++a) {
+        const auto first = std::partition_point(set.edge.begin() + block.begin, set.edge.begin() + block.end,
+                                                [&](EdgeCode e) { return e.axis() < a; });
+        block.axis_begin[a - 1] = static_cast<std::uint32_t>(first - set.edge.begin());
+      }
     }
   });
 }

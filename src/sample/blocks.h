@@ -12,6 +12,9 @@ namespace evenmesh {
 /// @param with_edges, with_sources  whether those arrays are used
 void resize_samples(SampleSet& set, std::size_t count, bool with_edges, bool with_sources, const Run& run);
 
+/// Sets every block's axis_begin from the edge codes.
+void mark_axes(SampleSet& set, const Run& run);
+
 /// Sets total_area from the samples, summed block by block in order.
 void sum_area(SampleSet& set, const Run& run);
 

@@ -11,27 +11,16 @@ class Keeper {
  public:
   explicit Keeper(const SampleSet& set) : set_(set), cells_per_unit_(static_cast<float>(1.0 / set.grid.spacing)) {}
 
-  bool operator()(std::uint32_t i) const {
-    if (!set_.edge.empty()) {
-      const EdgeCode e = set_.edge[i];
-      const unsigned odd = (e.i() & 1u) | (e.j() & 1u) << 1 | (e.k() & 1u) << 2;
-      return (odd & ~(1u << e.axis())) == 0;
-    }
-    // A set that was coarsened before has no codes: the ray's direction is that in which the sample is off the grid.
-    const float at[3] = {set_.x[i] * cells_per_unit_, set_.y[i] * cells_per_unit_, set_.z[i] * cells_per_unit_};
-    int axis = 0;
-    bool odd[3];
-    float farthest = -1;
-    for (int a = 0; a < 3; ++a) {
-      const float nearest = std::floor(at[a] + 0.5f), off = std::abs(at[a] - nearest);
-      odd[a] = (static_cast<int>(nearest) & 1) != 0;
-      if (off > farthest) axis = a, farthest = off;
-    }
-    odd[axis] = false;
-    return !odd[0] && !odd[1] && !odd[2];
+  bool operator()(std::uint32_t i, int axis) const {
+    if (axis != 0 && is_odd(set_.x[i])) return false;
+    if (axis != 1 && is_odd(set_.y[i])) return false;
+    return axis == 2 || !is_odd(set_.z[i]);
   }
 
  private:
+  // Block centres lie on even grid points, so the parity of the offset is that of the grid point.
+  bool is_odd(float offset) const { return (static_cast<int>(std::lrint(offset * cells_per_unit_)) & 1) != 0; }
+
   const SampleSet& set_;
   float cells_per_unit_;
 };
@@ -55,13 +44,13 @@ std::vector<CoarseBlock> group_blocks(const SampleSet& fine) {
   return groups;
 }
 
-void copy_block(const SampleSet& fine, const SampleBlock& from, const Keeper& keep, SampleSet& coarse,
+void copy_block(const SampleSet& fine, const SampleBlock& from, int axis, const Keeper& keep, SampleSet& coarse,
                 std::uint32_t& out) {
   const float h = static_cast<float>(fine.grid.spacing);
   float shift[3];
   for (std::size_t a = 0; a < 3; ++a) shift[a] = (from.brick[a] % 2 ? 0.5f : -0.5f) * brick_size * h;
-  for (std::uint32_t i = from.begin; i < from.end; ++i) {
-    if (!keep(i)) continue;
+  for (std::uint32_t i = from.begin_of_axis(axis); i < from.end_of_axis(axis); ++i) {
+    if (!keep(i, axis)) continue;
     coarse.x[out] = fine.x[i] + shift[0], coarse.y[out] = fine.y[i] + shift[1], coarse.z[out] = fine.z[i] + shift[2];
     coarse.area[out] = 4.0f * fine.area[i];
     coarse.normal[out] = fine.normal[i];
@@ -84,8 +73,12 @@ SampleSet coarsen(const SampleSet& fine, Run& run) {
     std::vector<std::uint32_t> kept(groups.size());
     parallel_for(run, groups.size(), 32, [&](std::size_t begin, std::size_t end) {
       for (std::size_t g = begin; g < end; ++g) {
-        const SampleBlock *first = &fine.blocks[groups[g].first_child], *last = first + groups[g].children - 1;
-        for (std::uint32_t i = first->begin; i < last->end; ++i) kept[g] += keep(i) ? 1 : 0;
+        for (std::uint32_t c = 0; c < groups[g].children; ++c) {
+          const SampleBlock& block = fine.blocks[groups[g].first_child + c];
+          for (int axis = 0; axis < 3; ++axis)
+            for (std::uint32_t i = block.begin_of_axis(axis); i < block.end_of_axis(axis); ++i)
+              kept[g] += keep(i, axis) ? 1 : 0;
+        }
       }
     });
     std::vector<std::uint32_t> child;
@@ -93,7 +86,7 @@ SampleSet coarsen(const SampleSet& fine, Run& run) {
     for (std::size_t g = 0; g < groups.size(); ++g) {
       if (kept[g] == 0) continue;
       const SampleBlock& first = fine.blocks[groups[g].first_child];
-      SampleBlock block{sum, sum + kept[g], first.brick};
+      SampleBlock block{sum, sum + kept[g], first.brick, {}};
       for (std::uint16_t& b : block.brick) b = static_cast<std::uint16_t>(b / 2);
       coarse.blocks.push_back(block);
       child.push_back(static_cast<std::uint32_t>(g));
@@ -104,8 +97,11 @@ SampleSet coarsen(const SampleSet& fine, Run& run) {
       for (std::size_t b = begin; b < end; ++b) {
         const CoarseBlock& group = groups[child[b]];
         std::uint32_t out = coarse.blocks[b].begin;
-        for (std::uint32_t c = 0; c < group.children; ++c)
-          copy_block(fine, fine.blocks[group.first_child + c], keep, coarse, out);
+        for (int axis = 0; axis < 3; ++axis) {
+          if (axis > 0) coarse.blocks[b].axis_begin[static_cast<std::size_t>(axis) - 1] = out;
+          for (std::uint32_t c = 0; c < group.children; ++c)
+            copy_block(fine, fine.blocks[group.first_child + c], axis, keep, coarse, out);
+        }
       }
     });
     sum_area(coarse, run);

@@ -38,12 +38,8 @@ struct PlacedSlab {
 // What a triangle gives to its samples: outward normal when its winding is as it should be and when not, area.
 struct SourceNormal {
   PackedNormal normal[2];
-  float area = 0;
+  float area[3] = {0, 0, 0};  ///< by axis; all zero for a degenerate triangle
 };
-
-double area_of(const Vec3& unit, double spacing) {
-  return spacing * spacing / (std::abs(unit.x) + std::abs(unit.y) + std::abs(unit.z));
-}
 
 std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const Run& run) {
   std::vector<SourceNormal> normals(mesh.triangles.size());
@@ -55,7 +51,8 @@ std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const
                  v = (mesh.vertices[t[2]] - a) / spacing;
       const Vec3 n = normalized(cross(u, v));
       if (n == Vec3{}) continue;
-      normals[i] = {{pack_normal(n), pack_normal(-n)}, static_cast<float>(area_of(n, spacing))};
+      normals[i].normal[0] = pack_normal(n), normals[i].normal[1] = pack_normal(-n);
+      for (int a = 0; a < 3; ++a) normals[i].area[a] = static_cast<float>(sample_area(n, a, spacing));
     }
   });
   return normals;
@@ -199,13 +196,13 @@ class BlockWriter {
     set_.source[out] = c.source;
     const SourceNormal& source = normals_[c.source];
     const bool upward = c.code.lower_end_inside();
-    if (c.made || source.area == 0) {
+    if (c.made || source.area[axis] == 0) {
       set_.normal[out] = axis_normal_[axis][upward];
       set_.area[out] = h_ * h_;
       return;
     }
     set_.normal[out] = source.normal[is_upward(source.normal[0], axis) != upward];
-    set_.area[out] = source.area;
+    set_.area[out] = source.area[axis];
   }
 
   // Sign of one component, without unpacking all of the normal.
@@ -244,6 +241,7 @@ SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const Run& run)
       }
     }
   });
+  mark_axes(set, run);
   sum_area(set, run);
   return set;
 }

@@ -193,7 +193,7 @@ void RootFinder::append(std::span<const Bracket> brackets, FieldPart& part) cons
       normal *= 1 / length;
     }
     part.x.push_back(at[0] * h), part.y.push_back(at[1] * h), part.z.push_back(at[2] * h);
-    part.area.push_back(h * h / static_cast<float>(std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z)));
+    part.area.push_back(static_cast<float>(sample_area(normal, static_cast<int>(axis), h)));
     part.normal.push_back(pack_normal(normal));
     part.edge.push_back(code);
     part.cut_by_bounds = part.cut_by_bounds || root.made;

@@ -137,6 +137,7 @@ SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, 
     for (std::size_t i = begin; i < end; ++i) worker.sample(field, field_grid, nodes[i], parts[i]);
   });
   SampleSet set = join_parts(grid, parts, run);
+  mark_axes(set, run);
   if (!field.has_gradient()) fit_normals(set, run);
   sum_area(set, run);
   return set;

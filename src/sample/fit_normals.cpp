@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <optional>
 
 #include "sample/field_parts.h"
 #include "sample/morton.h"
@@ -27,9 +26,8 @@ class Neighbourhood {
     EdgeCode code;
   };
 
-  explicit Neighbourhood(const SampleSet& set) : set_(set) {
-    for (const SampleBlock& b : set.blocks) codes_.push_back(morton_code(b.brick[0], b.brick[1], b.brick[2]));
-  }
+  /// @param codes  Morton codes of the set's blocks
+  Neighbourhood(const SampleSet& set, const std::vector<std::uint64_t>& codes) : set_(set), codes_(codes) {}
 
   void gather(const SampleBlock& center) {
     points_.clear();
@@ -95,7 +93,7 @@ class Neighbourhood {
   }
 
   const SampleSet& set_;
-  std::vector<std::uint64_t> codes_;
+  const std::vector<std::uint64_t>& codes_;
   std::vector<Point> points_;
   std::uint16_t rows_[kSide][kSide];
   Cell cells_[kSide][kSide][kSide];
@@ -138,15 +136,17 @@ Vec3 fitted_normal(const Neighbourhood& near, const Vec3& at, EdgeCode code) {
 
 void fit_normals(SampleSet& set, const Run& run) {
   const double h = set.grid.spacing;
+  std::vector<std::uint64_t> codes;
+  for (const SampleBlock& b : set.blocks) codes.push_back(morton_code(b.brick[0], b.brick[1], b.brick[2]));
   parallel_for(run, set.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
-    Neighbourhood near(set);
+    Neighbourhood near(set, codes);
     for (std::size_t b = begin; b < end; ++b) {
       const SampleBlock& block = set.blocks[b];
       near.gather(block);
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
         const Vec3 n = fitted_normal(near, Vec3{set.x[s], set.y[s], set.z[s]} / h, set.edge[s]);
         set.normal[s] = pack_normal(n);
-        set.area[s] = static_cast<float>(h * h / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)));
+        set.area[s] = static_cast<float>(sample_area(n, static_cast<int>(set.edge[s].axis()), h));
       }
     }
   });

@@ -50,9 +50,22 @@ struct EdgeCode {
 /// Grid points per side of a brick: a block holds the samples whose edges start in one brick.
 inline constexpr unsigned brick_size = 8;
 
+/// Area that a sample on a ray of `axis` stands for: h²·|n_axis|.
+///
+/// The rays of one axis alone hit the surface once per h²/|n_a| of area, evenly spaced. Counting that with the share n_a²,
+/// which add up to 1 over the axes, gives three quadratures that are each smooth and together exact, where equal shares
+/// h²/(|nx|+|ny|+|nz|) let grazing rays count as much as steep ones.
+inline double sample_area(const Vec3& unit_normal, int axis, double spacing) {
+  return spacing * spacing * std::abs(unit_normal[axis]);
+}
+
 struct SampleBlock {
-  std::uint32_t begin = 0, end = 0;      ///< range of samples
-  std::array<std::uint16_t, 3> brick{};  ///< brick coordinates: grid point / brick_size
+  std::uint32_t begin = 0, end = 0;           ///< range of samples, those on x rays first, then y, then z
+  std::array<std::uint16_t, 3> brick{};       ///< brick coordinates: grid point / brick_size
+  std::array<std::uint32_t, 2> axis_begin{};  ///< where the samples on y rays and on z rays begin
+
+  std::uint32_t begin_of_axis(int axis) const { return axis == 0 ? begin : axis_begin[static_cast<std::size_t>(axis) - 1]; }
+  std::uint32_t end_of_axis(int axis) const { return axis == 2 ? end : axis_begin[static_cast<std::size_t>(axis)]; }
 };
 
 /// Crossings of the surface with the edges of a grid, at most one per edge; structure of arrays.
@@ -62,7 +75,7 @@ struct SampleSet {
   Grid grid;
   std::vector<SampleBlock> blocks;
   std::vector<float> x, y, z;         ///< position relative to block_center(), model units
-  std::vector<float> area;            ///< piece of surface a sample stands for: h²/(|nx|+|ny|+|nz|)
+  std::vector<float> area;            ///< piece of surface a sample stands for, see sample_area()
   std::vector<PackedNormal> normal;   ///< unit, outward
   std::vector<EdgeCode> edge;         ///< empty in coarsened sets
   std::vector<std::uint32_t> source;  ///< triangle of the input mesh; empty for fields

@@ -1,0 +1,194 @@
+#include "cvt/starts.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <unordered_map>
+
+#include "core/random.h"
+
+namespace evenmesh {
+namespace {
+
+Vec3 sample_position(const SampleSet& samples, std::size_t block, std::size_t i) {
+  return samples.block_center(samples.blocks[block]) + Vec3{samples.x[i], samples.y[i], samples.z[i]};
+}
+
+/// A pair of neighbouring cells, seen from the sample nearest to the middle of their seeds.
+struct Border {
+  std::uint64_t pair;  ///< lower seed << 32 | higher seed
+  float distance;      ///< of that sample to the middle, squared
+  std::uint32_t sample, block;
+  friend bool operator<(const Border& a, const Border& b) {
+    return a.pair != b.pair ? a.pair < b.pair : a.distance != b.distance ? a.distance < b.distance : a.sample < b.sample;
+  }
+};
+
+/// One Border for every two cells that share a sample's footprint.
+std::vector<Border> borders(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run) {
+  const SampleSet& samples = evaluator.samples();
+  std::vector<NearestPair> nearest;
+  evaluator.nearest_pairs(seeds, nearest);
+  std::vector<std::vector<Border>> of_chunk((samples.blocks.size() + 63) / 64);
+  parallel_tasks(run, of_chunk.size(), [&](std::size_t chunk) {
+    auto& list = of_chunk[chunk];
+    for (std::size_t b = 64 * chunk; b < std::min(samples.blocks.size(), 64 * (chunk + 1)); ++b)
+      for (std::uint32_t i = samples.blocks[b].begin; i < samples.blocks[b].end; ++i) {
+        const auto [s, t, distance] = nearest[i];
+        if (s == t || distance > 0.7f * std::sqrt(samples.area[i])) continue;
+        const Vec3 middle = 0.5 * (seeds[s] + seeds[t]);
+        const auto off = static_cast<float>(squared_norm(sample_position(samples, b, i) - middle));
+        list.push_back({std::uint64_t{std::min(s, t)} << 32 | std::max(s, t), off, i, static_cast<std::uint32_t>(b)});
+      }
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end(), [](const Border& x, const Border& y) { return x.pair == y.pair; }), list.end());
+  });
+  std::vector<Border> all;
+  for (const auto& list : of_chunk) all.insert(all.end(), list.begin(), list.end());
+  tbb::parallel_sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end(), [](const Border& x, const Border& y) { return x.pair == y.pair; }), all.end());
+  return all;
+}
+
+}  // namespace
+
+std::vector<Vec3> random_start(const SampleSet& samples, std::size_t count, std::uint64_t seed) {
+  // Systematic sampling: one draw from each of `count` equal shares of the area.
+  std::vector<Vec3> seeds;
+  seeds.reserve(count);
+  Random random(seed);
+  double passed = 0, target = random.uniform() * samples.total_area / static_cast<double>(count);
+  for (std::size_t b = 0; b < samples.blocks.size(); ++b)
+    for (std::size_t i = samples.blocks[b].begin; i < samples.blocks[b].end; ++i) {
+      passed += samples.area[i];
+      while (seeds.size() < count && passed > target) {
+        seeds.push_back(sample_position(samples, b, i));
+        target = (static_cast<double>(seeds.size()) + random.uniform()) * samples.total_area / static_cast<double>(count);
+      }
+    }
+  while (seeds.size() < count) {
+    const std::size_t b = random.below(samples.blocks.size());
+    const SampleBlock& block = samples.blocks[b];
+    seeds.push_back(sample_position(samples, b, block.begin + random.below(block.end - block.begin)));
+  }
+  return seeds;
+}
+
+std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, std::uint64_t seed) {
+  const std::size_t many = std::min(samples.size(), 4 * count);
+  if (many <= count) return random_start(samples, count, seed);
+  const std::vector<Vec3> points = random_start(samples, many, seed);
+  // Radius of a disk in the densest packing of `count` disks on the area.
+  const double radius = std::sqrt(samples.total_area / (2 * std::sqrt(3.0) * static_cast<double>(count)));
+  const double reach = 2 * radius;
+  const auto cell_of = [&](const Vec3& p) {
+    const Vec3 q = (p - samples.grid.origin) / reach;
+    return std::array<std::int64_t, 3>{static_cast<std::int64_t>(std::floor(q.x)), static_cast<std::int64_t>(std::floor(q.y)),
+                                       static_cast<std::int64_t>(std::floor(q.z))};
+  };
+  const auto key = [](std::int64_t i, std::int64_t j, std::int64_t k) { return (i + 1) << 42 | (j + 1) << 21 | (k + 1); };
+  std::unordered_map<std::int64_t, std::vector<std::uint32_t>> cells;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto c = cell_of(points[p]);
+    cells[key(c[0], c[1], c[2])].push_back(static_cast<std::uint32_t>(p));
+  }
+  std::vector<std::vector<std::pair<std::uint32_t, double>>> neighbours(many);
+  std::vector<double> crowding(many, 0);
+  for (std::size_t p = 0; p < many; ++p) {
+    const auto c = cell_of(points[p]);
+    for (int d = 0; d < 27; ++d) {
+      const auto it = cells.find(key(c[0] + d % 3 - 1, c[1] + d / 3 % 3 - 1, c[2] + d / 9 - 1));
+      if (it == cells.end()) continue;
+      for (const std::uint32_t q : it->second) {
+        const double distance = norm(points[p] - points[q]);
+        if (q == p || distance >= reach) continue;
+        const double weight = std::pow(1 - distance / reach, 8);
+        neighbours[p].push_back({q, weight});
+        crowding[p] += weight;
+      }
+    }
+  }
+  std::priority_queue<std::pair<double, std::uint32_t>> queue;
+  for (std::size_t p = 0; p < many; ++p) queue.push({crowding[p], static_cast<std::uint32_t>(p)});
+  std::vector<char> removed(many, 0);
+  for (std::size_t left = many; left > count;) {
+    const auto [weight, p] = queue.top();
+    queue.pop();
+    if (removed[p] || weight != crowding[p]) continue;
+    removed[p] = 1, --left;
+    for (const auto& [q, w] : neighbours[p])
+      if (!removed[q]) queue.push({crowding[q] -= w, q});
+  }
+  std::vector<Vec3> seeds;
+  for (std::size_t p = 0; p < many; ++p)
+    if (!removed[p]) seeds.push_back(points[p]);
+  return seeds;
+}
+
+std::vector<Vec3> split_seeds(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run) {
+  const SampleSet& samples = evaluator.samples();
+  std::vector<Vec3> split = seeds;
+  for (const Border& border : borders(evaluator, seeds, run)) {
+    const Vec3 middle = 0.5 * (seeds[border.pair >> 32] + seeds[border.pair & 0xffffffffu]);
+    const Vec3 n = unpack_normal(samples.normal[border.sample]);
+    split.push_back(middle + n * dot(n, sample_position(samples, border.block, border.sample) - middle));
+  }
+  return split;
+}
+
+std::size_t count_neighbour_pairs(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run) {
+  return borders(evaluator, seeds, run).size();
+}
+
+void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run) {
+  if (seeds.size() == count) return;
+  const SampleSet& samples = evaluator.samples();
+  std::vector<std::uint32_t> labels;
+  evaluator.nearest(seeds, labels);
+  std::vector<double> mass(seeds.size(), 0);
+  for (std::size_t i = 0; i < labels.size(); ++i) mass[labels[i]] += samples.area[i];
+  std::vector<std::uint32_t> order(seeds.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
+  const bool remove = seeds.size() > count;
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) {
+    return mass[a] != mass[b] ? (remove ? mass[a] < mass[b] : mass[a] > mass[b]) : a < b;
+  });
+  if (remove) {
+    std::vector<char> gone(seeds.size(), 0);
+    for (std::size_t i = 0; i + count < seeds.size(); ++i) gone[order[i]] = 1;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < seeds.size(); ++i)
+      if (!gone[i]) seeds[kept++] = seeds[i];
+    seeds.resize(kept);
+    return;
+  }
+  // A new seed goes to a random sample of a heavy cell.
+  std::vector<std::uint32_t> wanted(seeds.size(), 0);
+  for (std::size_t i = 0; i + seeds.size() < count; ++i) ++wanted[order[i % order.size()]];
+  Random random(seed);
+  std::vector<Vec3> added;
+  std::vector<std::uint32_t> seen(seeds.size(), 0);
+  std::unordered_map<std::uint32_t, std::vector<Vec3>> places;
+  for (std::size_t b = 0; b < samples.blocks.size(); ++b)
+    for (std::size_t i = samples.blocks[b].begin; i < samples.blocks[b].end; ++i) {
+      const std::uint32_t l = labels[i];
+      if (wanted[l] == 0) continue;
+      auto& place = places[l];  // reservoir of `wanted` samples
+      ++seen[l];
+      if (place.size() < wanted[l])
+        place.push_back(sample_position(samples, b, i));
+      else if (const auto at = random.below(seen[l]); at < wanted[l])
+        place[at] = sample_position(samples, b, i);
+    }
+  for (std::size_t i = 0; i < order.size() && wanted[order[i]] > 0; ++i) {
+    const auto it = places.find(order[i]);
+    if (it == places.end()) continue;
+    for (const Vec3& p : it->second)
+      if (seeds.size() + added.size() < count) added.push_back(p);
+  }
+  seeds.insert(seeds.end(), added.begin(), added.end());
+}
+
+}  // namespace evenmesh

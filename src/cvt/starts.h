@@ -1,0 +1,30 @@
+#pragma once
+/// Where seeds start.
+
+#include <cstdint>
+#include <vector>
+
+#include "cvt/cells.h"
+
+namespace evenmesh {
+
+/// `count` samples drawn by area (with replacement on few samples). [Raster2Mesh §4.1]
+std::vector<Vec3> random_start(const SampleSet& samples, std::size_t count, std::uint64_t seed);
+
+/// `count` samples spread by elimination: from several times as many random ones those with the most crowded neighbourhood
+/// go first (Yuksel, Sample elimination for generating Poisson disk sample sets, CGF 2015). Cost: O(count log count).
+std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, std::uint64_t seed);
+
+/// The seeds and a new one in the middle of every pair of neighbouring cells: four times as many, and wherever the seeds lie in
+/// a hexagonal pattern the new ones continue it, so that irregular vertices do not multiply.
+/// @param evaluator  samples, about 100 per seed or more, so that short borders between cells are seen
+std::vector<Vec3> split_seeds(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run);
+
+/// Number of pairs of neighbouring cells: what split_seeds() would add.
+std::size_t count_neighbour_pairs(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run);
+
+/// Adds seeds in the heaviest cells, or removes those of the lightest, until there are `count`; no two changes touch
+/// neighbouring places unless there is no other way.
+void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run);
+
+}  // namespace evenmesh
