@@ -37,6 +37,7 @@ constexpr float deepest = -0.1f;
 
 HWY_BEFORE_NAMESPACE();
 namespace evenmesh::HWY_NAMESPACE {
+namespace {
 
 /// |p_k|², dr_k and log B / n^(N−k) of the last step of each orbit; lanes stop where they escape.
 struct Orbit {
@@ -134,6 +135,7 @@ std::size_t lanes() {
   return hn::Lanes(FloatTag());
 }
 
+}  // namespace
 }  // namespace evenmesh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -16,6 +16,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace evenmesh::HWY_NAMESPACE {
+namespace {
 
 /// Vectors that a loop takes at once, so that its own cost is small beside two loads and a store.
 constexpr std::size_t unroll = 4;
@@ -274,6 +275,7 @@ void run_chunk_gradient(const Tape& tape, std::size_t n, const Planes* registers
     run_gradient(c, padded, registers[c.dst], registers[c.a], registers[c.b], factors);
 }
 
+}  // namespace
 }  // namespace evenmesh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -17,6 +17,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace evenmesh::HWY_NAMESPACE {
+namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -163,6 +164,7 @@ HWY_INLINE Floats power(Floats a, Floats b) {
   return hn::IfThenElse(hn::Eq(b, hn::Zero(FloatTag())), number(1.0f), result);
 }
 
+}  // namespace
 }  // namespace evenmesh::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -16,10 +16,6 @@ using testing::Points;
 using testing::random_points;
 using testing::value_at;
 
-bool inside(const Field& field, const Vec3& p) {
-  return value_at(field, p) < 0;
-}
-
 TEST(Gallery, HasEveryShapeOnce) {
   std::set<std::string_view> names;
   for (const GalleryEntry& entry : gallery()) {
