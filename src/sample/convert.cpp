@@ -38,7 +38,8 @@ struct PlacedSlab {
 // What a triangle gives to its samples: outward normal when its winding is as it should be and when not, area.
 struct SourceNormal {
   PackedNormal normal[2];
-  float area[3] = {0, 0, 0};  ///< by axis; all zero for a degenerate triangle
+  float area[3] = {};  // by axis
+  bool degenerate = true;
 };
 
 std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const Run& run) {
@@ -52,7 +53,8 @@ std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const
       const Vec3 n = normalized(cross(u, v));
       if (n == Vec3{}) continue;
       normals[i].normal[0] = pack_normal(n), normals[i].normal[1] = pack_normal(-n);
-      for (int a = 0; a < 3; ++a) normals[i].area[a] = static_cast<float>(sample_area(n, a, spacing));
+      normals[i].degenerate = false;
+      for (int axis = 0; axis < 3; ++axis) normals[i].area[axis] = static_cast<float>(sample_area(n, axis, spacing));
     }
   });
   return normals;
@@ -196,7 +198,7 @@ class BlockWriter {
     set_.source[out] = c.source;
     const SourceNormal& source = normals_[c.source];
     const bool upward = c.code.lower_end_inside();
-    if (c.made || source.area[axis] == 0) {
+    if (c.made || source.degenerate) {
       set_.normal[out] = axis_normal_[axis][upward];
       set_.area[out] = h_ * h_;
       return;

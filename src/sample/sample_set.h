@@ -52,9 +52,9 @@ inline constexpr unsigned brick_size = 8;
 
 /// Area that a sample on a ray of `axis` stands for: h²·|n_axis|.
 ///
-/// The rays of one axis alone hit the surface once per h²/|n_a| of area, evenly spaced. Counting that with the share n_a²,
-/// which add up to 1 over the axes, gives three quadratures that are each smooth and together exact, where equal shares
-/// h²/(|nx|+|ny|+|nz|) let grazing rays count as much as steep ones.
+/// The rays of one axis alone hit the surface once per h²/|n_a| of area, evenly spaced. Counting that with the share
+/// n_a², which add up to 1 over the axes, gives three quadratures that are each smooth and together exact, where equal
+/// shares h²/(|nx|+|ny|+|nz|) let grazing rays count as much as steep ones.
 inline double sample_area(const Vec3& unit_normal, int axis, double spacing) {
   return spacing * spacing * std::abs(unit_normal[axis]);
 }
@@ -64,7 +64,9 @@ struct SampleBlock {
   std::array<std::uint16_t, 3> brick{};       ///< brick coordinates: grid point / brick_size
   std::array<std::uint32_t, 2> axis_begin{};  ///< where the samples on y rays and on z rays begin
 
-  std::uint32_t begin_of_axis(int axis) const { return axis == 0 ? begin : axis_begin[static_cast<std::size_t>(axis) - 1]; }
+  std::uint32_t begin_of_axis(int axis) const {
+    return axis == 0 ? begin : axis_begin[static_cast<std::size_t>(axis) - 1];
+  }
   std::uint32_t end_of_axis(int axis) const { return axis == 2 ? end : axis_begin[static_cast<std::size_t>(axis)]; }
 };
 

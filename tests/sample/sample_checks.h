@@ -102,7 +102,7 @@ inline void expect_well_formed(const SampleSet& set) {
   std::uint32_t next = 0;
   std::uint64_t last_code = 0;
   double area = 0;
-  std::size_t off_edge = 0, against = 0, weights = 0, unsorted = 0;
+  std::size_t off_axis = 0, off_edge = 0, against = 0, weights = 0, unsorted = 0;
   const double h = set.grid.spacing;
   for (std::size_t k = 0; k < set.blocks.size(); ++k) {
     const SampleBlock& b = set.blocks[k];
@@ -112,6 +112,9 @@ inline void expect_well_formed(const SampleSet& set) {
     const std::uint64_t code = morton_code(b.brick[0], b.brick[1], b.brick[2]);
     ASSERT_TRUE(k == 0 || last_code < code);
     last_code = code;
+    for (int a = 0; a < 3; ++a)
+      for (std::uint32_t i = b.begin_of_axis(a); i < b.end_of_axis(a); ++i)
+        if (static_cast<int>(set.edge[i].axis()) != a) ++off_axis;
     for (std::size_t i = b.begin; i < b.end; ++i) {
       if (i > b.begin && set.edge[i - 1].bits >> 1 >= set.edge[i].bits >> 1) ++unsorted;
       const EdgeOf e = edge_of(set, b, i);
@@ -123,13 +126,14 @@ inline void expect_well_formed(const SampleSet& set) {
       const Vec3 normal = unpack_normal(set.normal[i]);
       const double outward = normal[static_cast<int>(e.axis)] * (set.edge[i].lower_end_inside() ? 1 : -1);
       if (outward < -1e-3) ++against;
-      const double weight = h * h / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-      if (std::abs(set.area[i] - weight) > 1e-3 * weight) ++weights;
+      const double weight = sample_area(normal, static_cast<int>(e.axis), h);
+      if (std::abs(set.area[i] - weight) > 1e-4 * h * h) ++weights;
       area += set.area[i];
     }
   }
   EXPECT_EQ(next, n);
   EXPECT_EQ(unsorted, 0u);
+  EXPECT_EQ(off_axis, 0u);
   EXPECT_EQ(off_edge, 0u);
   EXPECT_LE(against, n / 1000);
   EXPECT_EQ(weights, 0u);
@@ -143,7 +147,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 inline void expect_same(const SampleSet& a, const SampleSet& b) {
   const auto same_block = [](const SampleBlock& u, const SampleBlock& v) {
-    return u.begin == v.begin && u.end == v.end && u.brick == v.brick;
+    return u.begin == v.begin && u.end == v.end && u.brick == v.brick && u.axis_begin == v.axis_begin;
   };
   EXPECT_TRUE(std::equal(a.blocks.begin(), a.blocks.end(), b.blocks.begin(), b.blocks.end(), same_block));
   EXPECT_TRUE(same_bytes(a.x, b.x) && same_bytes(a.y, b.y) && same_bytes(a.z, b.z));
