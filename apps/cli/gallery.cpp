@@ -15,7 +15,11 @@ namespace {
 std::string list_text() {
   std::string text;
   for (const GalleryEntry& entry : gallery()) {
-    text += fmt::format("{:<15} {}\n{:<15} {}\n", entry.name, entry.formula, "", entry.topology);
+    // A few formulas fill a screen; --json has them in full.
+    const bool long_one = entry.formula.size() > 110;
+    const std::string formula =
+        fmt::format("{}{}", entry.formula.substr(0, long_one ? 100 : 110), long_one ? " …" : "");
+    text += fmt::format("{:<15} {}\n{:<15} {}\n", entry.name, formula, "", entry.topology);
   }
   return text + "\nMesh one: evenmesh gallery NAME -n 5000 -o NAME.ply\n";
 }

@@ -19,17 +19,17 @@ struct PlannedKind {
   std::string_view extension, what;
 };
 constexpr std::array planned_kinds{
-    PlannedKind{".glsl", "meshing a distance function in GLSL"},
-    PlannedKind{".frag", "meshing a distance function in GLSL"},
-    PlannedKind{".json", "meshing a scene file"},
-    PlannedKind{".vdb", "meshing an OpenVDB volume"},
-    PlannedKind{".nii", "meshing a NIfTI volume"},
-    PlannedKind{".nii.gz", "meshing a NIfTI volume"},
-    PlannedKind{".nrrd", "meshing an NRRD volume"},
-    PlannedKind{".tdx", "meshing dexels"},
-    PlannedKind{".xyz", "meshing a point cloud"},
-    PlannedKind{".pts", "meshing a point cloud"},
-    PlannedKind{".pwn", "meshing a point cloud"},
+    PlannedKind{".glsl", "reading a distance function in GLSL"},
+    PlannedKind{".frag", "reading a distance function in GLSL"},
+    PlannedKind{".json", "reading a scene file"},
+    PlannedKind{".vdb", "reading an OpenVDB volume"},
+    PlannedKind{".nii", "reading a NIfTI volume"},
+    PlannedKind{".nii.gz", "reading a NIfTI volume"},
+    PlannedKind{".nrrd", "reading an NRRD volume"},
+    PlannedKind{".tdx", "reading dexels"},
+    PlannedKind{".xyz", "reading a point cloud"},
+    PlannedKind{".pts", "reading a point cloud"},
+    PlannedKind{".pwn", "reading a point cloud"},
 };
 
 bool ends_with_ignoring_case(std::string_view text, std::string_view ending) {
