@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include "evenmesh/render.h"
+#include "geometry/primitives.h"
+#include "view/charts.h"
+
+namespace evenmesh {
+namespace {
+
+MeshResult example() {
+  MeshResult result;
+  result.mesh = make_icosphere(2);
+  Report& report = result.report;
+  report.quality = measure_quality(result.mesh);
+  report.energies = {1.3, 1.1, 1.05, 1.02, 1.2, 1.01};
+  report.energy_ratio = 1.01;
+  report.seconds = {{"sample", 0.2}, {"balance <fast>", 0.7}};
+  report.notices = {{false, "12 more vertices were needed."}, {true, "2 pairs & more <intersect>."}};
+  return result;
+}
+
+std::size_t count_of(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+TEST(Report, IsOneSelfContainedPage) {
+  const std::string html = report_html(example(), "a <b> & \"c\"");
+  EXPECT_EQ(html.rfind("<!doctype html>", 0), 0u);
+  EXPECT_LT(html.size(), 1'500'000u);
+  EXPECT_EQ(count_of(html, "src=\"data:image/png;base64,iVBORw0KGgo"), 3u);
+  EXPECT_EQ(count_of(html, "src="), 3u);
+  EXPECT_EQ(count_of(html, "<svg"), 3u);
+  EXPECT_EQ(count_of(html, "http"), 0u);
+  EXPECT_EQ(count_of(html, "<script"), 0u);
+  for (const char* tag : {"div", "section", "figure", "table", "svg", "p", "ul", "li", "main", "body", "html"})
+    EXPECT_EQ(count_of(html, "<" + std::string(tag) + ">") + count_of(html, "<" + std::string(tag) + " "),
+              count_of(html, "</" + std::string(tag) + ">"))
+        << tag;
+}
+
+TEST(Report, EscapesAllText) {
+  const std::string html = report_html(example(), "a <b> & \"c\"");
+  EXPECT_EQ(html.find("<b> &"), std::string::npos);
+  EXPECT_NE(html.find("a &lt;b&gt; &amp; &quot;c&quot;"), std::string::npos);
+  EXPECT_NE(html.find("2 pairs &amp; more &lt;intersect&gt;."), std::string::npos);
+  EXPECT_NE(html.find("balance &lt;fast&gt;"), std::string::npos);
+}
+
+TEST(Report, PutsBrokenPromisesFirst) {
+  const std::string html = report_html(example(), "x");
+  EXPECT_LT(html.find("2 pairs"), html.find("12 more"));
+  EXPECT_LT(html.find("12 more"), html.find("<figure"));
+}
+
+TEST(Report, OfAnEmptyResultIsStillAPage) {
+  const std::string html = report_html({}, "nothing");
+  EXPECT_NE(html.find("</html>"), std::string::npos);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+}
+
+TEST(Charts, CopeWithExtremes) {
+  EXPECT_TRUE(energy_svg({}).empty());
+  EXPECT_TRUE(time_bar_html({{"nothing", 0.0}}).empty());
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& ratios :
+       {std::vector<double>{1.0}, {0.9, 1.0}, {1e6, 1.0001}, {infinity, 1.1}, std::vector<double>(100'000, 1.01)}) {
+    const std::string svg = energy_svg(ratios);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_EQ(svg.find("inf"), std::string::npos);
+    EXPECT_LT(svg.size(), 30'000u);
+  }
+  EXPECT_NE(histogram_svg(Histogram{0, 1, {0, 0}}, "none", "", 5, 1).find("</svg>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace evenmesh
