@@ -263,16 +263,18 @@ HWY_NOINLINE void run_gradient(const Instruction& c, std::size_t n, const Planes
   run_values(c, n, dst[0], a[0], b[0]);
 }
 
-/// All operations on up to one chunk of points. registers[r] is where register r lies.
+/// Points that the loops take at once.
+std::size_t step_size() {
+  return unroll * hn::Lanes(FloatTag());
+}
+
+/// All operations on up to one chunk of points, a multiple of the step. registers[r] is where register r lies.
 void run_chunk(const Tape& tape, std::size_t n, float* const* registers) {
-  const std::size_t step = unroll * hn::Lanes(FloatTag()), padded = (n + step - 1) / step * step;
-  for (const Instruction& c : tape.code) run_values(c, padded, registers[c.dst], registers[c.a], registers[c.b]);
+  for (const Instruction& c : tape.code) run_values(c, n, registers[c.dst], registers[c.a], registers[c.b]);
 }
 
 void run_chunk_gradient(const Tape& tape, std::size_t n, const Planes* registers, float* factors) {
-  const std::size_t step = unroll * hn::Lanes(FloatTag()), padded = (n + step - 1) / step * step;
-  for (const Instruction& c : tape.code)
-    run_gradient(c, padded, registers[c.dst], registers[c.a], registers[c.b], factors);
+  for (const Instruction& c : tape.code) run_gradient(c, n, registers[c.dst], registers[c.a], registers[c.b], factors);
 }
 
 }  // namespace
@@ -283,6 +285,7 @@ HWY_AFTER_NAMESPACE();
 namespace evenmesh {
 namespace {
 
+HWY_EXPORT(step_size);
 HWY_EXPORT(run_chunk);
 HWY_EXPORT(run_chunk_gradient);
 
@@ -295,10 +298,16 @@ float* scratch(std::size_t count) {
   return room.data() + (64 - address % 64) % 64 / sizeof(float);
 }
 
-/// Copies a last, incomplete chunk and fills it up, so that no vector reaches beyond the caller's arrays.
-void fill_up(std::span<const float> from, float* to) {
+/// n rounded up to whole steps of the kernels.
+std::size_t whole_steps(std::size_t n) {
+  const std::size_t step = HWY_DYNAMIC_DISPATCH(step_size)();
+  return (n + step - 1) / step * step;
+}
+
+/// Copies the last points and fills up the step, so that no vector reaches beyond the caller's arrays.
+void fill_up(std::span<const float> from, std::size_t padded, float* to) {
   std::copy(from.begin(), from.end(), to);
-  std::fill(to + from.size(), to + tape_chunk, from.back());
+  std::fill(to + from.size(), to + padded, from.back());
 }
 
 /// Operations only read inputs and constants, but registers of both kinds stand in one table.
@@ -318,17 +327,17 @@ void run_tape(const Tape& tape, const PointBatch& points, std::span<float> value
   const std::uint32_t result = tape.code.back().dst;
   const std::span<const float> coordinates[3] = {points.x, points.y, points.z};
   for (std::size_t begin = 0; begin < values.size(); begin += tape_chunk) {
-    const std::size_t n = std::min(tape_chunk, values.size() - begin);
+    const std::size_t n = std::min(tape_chunk, values.size() - begin), padded = whole_steps(n);
     // The result's register is the caller's array itself.
-    registers[result] = n == tape_chunk ? &values[begin] : padding + 3 * tape_chunk;
+    registers[result] = n == padded ? &values[begin] : padding + 3 * tape_chunk;
     for (int axis = 0; axis < 3; ++axis) {
       registers[axis] = readable(&coordinates[axis][begin]);
-      if (n == tape_chunk) continue;
-      fill_up(coordinates[axis].subspan(begin, n), padding + axis * tape_chunk);
+      if (n == padded) continue;
+      fill_up(coordinates[axis].subspan(begin, n), padded, padding + axis * tape_chunk);
       registers[axis] = padding + axis * tape_chunk;
     }
-    HWY_DYNAMIC_DISPATCH(run_chunk)(tape, n, registers.data());
-    if (n < tape_chunk) std::copy_n(registers[result], n, &values[begin]);
+    HWY_DYNAMIC_DISPATCH(run_chunk)(tape, padded, registers.data());
+    if (n < padded) std::copy_n(registers[result], n, &values[begin]);
   }
 }
 
@@ -351,14 +360,14 @@ void run_tape_gradient(const Tape& tape, const PointBatch& points, std::span<flo
   const std::span<const float> coordinates[3] = {points.x, points.y, points.z};
   const std::span<float> outputs[4] = {values, dx, dy, dz};
   for (std::size_t begin = 0; begin < values.size(); begin += tape_chunk) {
-    const std::size_t n = std::min(tape_chunk, values.size() - begin);
+    const std::size_t n = std::min(tape_chunk, values.size() - begin), padded = whole_steps(n);
     for (int axis = 0; axis < 3; ++axis) {
       registers[axis] = {readable(&coordinates[axis][begin]), ones, ones, ones};
-      if (n == tape_chunk) continue;
-      fill_up(coordinates[axis].subspan(begin, n), plane(temporaries + axis));
+      if (n == padded) continue;
+      fill_up(coordinates[axis].subspan(begin, n), padded, plane(temporaries + axis));
       registers[axis][0] = plane(temporaries + axis);
     }
-    HWY_DYNAMIC_DISPATCH(run_chunk_gradient)(tape, n, registers.data(), factors);
+    HWY_DYNAMIC_DISPATCH(run_chunk_gradient)(tape, padded, registers.data(), factors);
     for (int k = 0; k < 4; ++k) {
       if (k > 0 && (tape.mask >> (k - 1) & 1) == 0)
         std::fill_n(&outputs[k][begin], n, 0.0f);
