@@ -26,8 +26,7 @@ evenmesh_test(house)
 evenmesh_test(cli nlohmann_json::nlohmann_json)
 if(TARGET test_cli)
   add_dependencies(test_cli evenmesh)
-  target_compile_definitions(test_cli PRIVATE EVENMESH_PROGRAM="$<TARGET_FILE:evenmesh>"
-                                              EVENMESH_SANITIZED=$<BOOL:${EVENMESH_SANITIZE}>)
+  target_compile_definitions(test_cli PRIVATE EVENMESH_PROGRAM="$<TARGET_FILE:evenmesh>")
 endif()
 
 # Somebody else's project: finds the installed package, builds against it, runs.
