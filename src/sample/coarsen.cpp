@@ -12,12 +12,16 @@ class Keeper {
   explicit Keeper(const SampleSet& set) : set_(set), cells_per_unit_(static_cast<float>(1.0 / set.grid.spacing)) {}
 
   bool operator()(std::uint32_t i, int axis) const {
+    if (!set_.edge.empty()) return (set_.edge[i].bits & kOddAcross[axis]) == 0;
     if (axis != 0 && is_odd(set_.x[i])) return false;
     if (axis != 1 && is_odd(set_.y[i])) return false;
     return axis == 2 || !is_odd(set_.z[i]);
   }
 
  private:
+  // The lowest bits of the two cell indices across a ray, in EdgeCode.
+  static constexpr unsigned kOddAcross[3] = {1u << 4 | 1u << 1, 1u << 7 | 1u << 1, 1u << 7 | 1u << 4};
+
   // Block centres lie on even grid points, so the parity of the offset is that of the grid point.
   bool is_odd(float offset) const { return (static_cast<int>(std::lrint(offset * cells_per_unit_)) & 1) != 0; }
 

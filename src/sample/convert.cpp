@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 
 #include "evenmesh/error.h"
 #include "sample/blocks.h"
@@ -31,15 +32,16 @@ struct Piece {
 };
 
 struct PlacedSlab {
-  std::vector<Placed> crossings;
+  std::unique_ptr<Placed[]> crossings;  // as many as the slab's; not initialized twice, unlike a vector
   std::vector<Piece> pieces;
 };
 
-// What a triangle gives to its samples: outward normal when its winding is as it should be and when not, area.
+// What a triangle gives to its samples: its normal, and their area by axis, all zero when it is degenerate.
 struct SourceNormal {
-  PackedNormal normal[2];
-  float area[3] = {};  // by axis
-  bool degenerate = true;
+  PackedNormal normal;
+  float area[3] = {};
+
+  bool degenerate() const { return area[0] + area[1] + area[2] == 0; }
 };
 
 std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const Run& run) {
@@ -48,23 +50,34 @@ std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle& t = mesh.triangles[i];
       // In units of the spacing, so that small models do not underflow.
-      const Vec3 a = mesh.vertices[t[0]], u = (mesh.vertices[t[1]] - a) / spacing,
-                 v = (mesh.vertices[t[2]] - a) / spacing;
-      const Vec3 n = normalized(cross(u, v));
-      if (n == Vec3{}) continue;
-      normals[i].normal[0] = pack_normal(n), normals[i].normal[1] = pack_normal(-n);
-      normals[i].degenerate = false;
+      const double scale = 1.0 / spacing;
+      const Vec3 a = mesh.vertices[t[0]];
+      const Vec3 n = normalized(cross((mesh.vertices[t[1]] - a) * scale, (mesh.vertices[t[2]] - a) * scale));
+      normals[i].normal = pack_normal(n);
       for (int axis = 0; axis < 3; ++axis) normals[i].area[axis] = static_cast<float>(sample_area(n, axis, spacing));
     }
   });
   return normals;
 }
 
+// Whether a component is positive, without unpacking; and the opposite normal, both on the octahedron's 65534 steps.
+bool is_upward(PackedNormal n, unsigned axis) {
+  const int u = static_cast<int>(n.bits & 0xffff) - 32767, v = static_cast<int>(n.bits >> 16) - 32767;
+  return axis == 0 ? u >= 0 : axis == 1 ? v >= 0 : std::abs(u) + std::abs(v) <= 32767;
+}
+
+PackedNormal opposite(PackedNormal n) {
+  const int u = static_cast<int>(n.bits & 0xffff) - 32767, v = static_cast<int>(n.bits >> 16) - 32767;
+  // Turning z over folds the square's corners; the sign of what is folded stays that of u and v, here negated.
+  const int fu = (32767 - std::abs(v)) * (u < 0 ? 1 : -1), fv = (32767 - std::abs(u)) * (v < 0 ? 1 : -1);
+  return {static_cast<std::uint32_t>(fu + 32767) | static_cast<std::uint32_t>(fv + 32767) << 16};
+}
+
 // Groups one slab's crossings by brick: eight p at a time, a counting sort by brick along the ray.
 void place_slab(const DexelSlab& slab, int axis, std::size_t index, std::vector<std::uint32_t>& count,
                 PlacedSlab& placed) {
   const std::size_t rays = slab.rays();
-  placed.crossings.resize(slab.crossings.size());
+  placed.crossings = std::make_unique_for_overwrite<Placed[]>(slab.crossings.size());
   const auto shift = static_cast<unsigned>(axis);
   for (std::size_t r = 0; r < rays;) {
     const std::size_t p_brick = (slab.first + r / brick_size) / brick_size;
@@ -164,7 +177,15 @@ std::vector<std::uint32_t> make_blocks(const std::vector<Piece>& pieces, SampleS
 class BlockWriter {
  public:
   BlockWriter(const std::vector<SourceNormal>& normals, SampleSet& set)
-      : normals_(normals), set_(set), h_(static_cast<float>(set.grid.spacing)) {
+      : normals_(normals.data()),
+        x_(set.x.data()),
+        y_(set.y.data()),
+        z_(set.z.data()),
+        area_(set.area.data()),
+        normal_(set.normal.data()),
+        edge_(set.edge.data()),
+        source_(set.source.data()),
+        h_(static_cast<float>(set.grid.spacing)) {
     for (unsigned a = 0; a < 3; ++a)
       for (unsigned up = 0; up < 2; ++up) {
         Vec3 n;
@@ -181,6 +202,7 @@ class BlockWriter {
       const unsigned edge = crossings[c].code.bits >> 1 & 511;
       used[edge / 64] |= std::uint64_t{1} << edge % 64;
       table_[edge] = c;
+      __builtin_prefetch(&normals_[crossings[c].source]);
     }
     for (unsigned word = 0; word < 8; ++word)
       for (std::uint64_t rest = used[word]; rest != 0; rest &= rest - 1)
@@ -193,28 +215,25 @@ class BlockWriter {
     const unsigned axis = c.code.axis();
     float at[3] = {c.code.i() - half, c.code.j() - half, c.code.k() - half};
     at[axis] += c.t;
-    set_.x[out] = at[0] * h_, set_.y[out] = at[1] * h_, set_.z[out] = at[2] * h_;
-    set_.edge[out] = c.code;
-    set_.source[out] = c.source;
+    x_[out] = at[0] * h_, y_[out] = at[1] * h_, z_[out] = at[2] * h_;
+    edge_[out] = c.code;
+    source_[out] = c.source;
     const SourceNormal& source = normals_[c.source];
     const bool upward = c.code.lower_end_inside();
-    if (c.made || source.degenerate) {
-      set_.normal[out] = axis_normal_[axis][upward];
-      set_.area[out] = h_ * h_;
+    if (c.made || source.degenerate()) {
+      normal_[out] = axis_normal_[axis][upward];
+      area_[out] = h_ * h_;
       return;
     }
-    set_.normal[out] = source.normal[is_upward(source.normal[0], axis) != upward];
-    set_.area[out] = source.area[axis];
+    normal_[out] = is_upward(source.normal, axis) == upward ? source.normal : opposite(source.normal);
+    area_[out] = source.area[axis];
   }
 
-  // Sign of one component, without unpacking all of the normal.
-  static bool is_upward(PackedNormal n, unsigned axis) {
-    const int u = static_cast<int>(n.bits & 0xffff) - 32767, v = static_cast<int>(n.bits >> 16) - 32767;
-    return axis == 0 ? u >= 0 : axis == 1 ? v >= 0 : std::abs(u) + std::abs(v) <= 32767;
-  }
-
-  const std::vector<SourceNormal>& normals_;
-  SampleSet& set_;
+  const SourceNormal* normals_;
+  float *x_, *y_, *z_, *area_;
+  PackedNormal* normal_;
+  EdgeCode* edge_;
+  std::uint32_t* source_;
   float h_;
   PackedNormal axis_normal_[3][2];
   std::uint16_t table_[512];
@@ -238,7 +257,7 @@ SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const Run& run)
       for (std::uint32_t i = first[b]; i < first[b + 1]; ++i) {
         const Piece& piece = pieces[i];
         const PlacedSlab& slab = placed[static_cast<std::size_t>(piece.axis())][piece.slab];
-        writer.write(std::span(slab.crossings).subspan(piece.begin, piece.end - piece.begin), out);
+        writer.write({slab.crossings.get() + piece.begin, piece.end - piece.begin}, out);
         out += piece.end - piece.begin;
       }
     }

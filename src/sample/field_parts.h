@@ -78,6 +78,7 @@ class RootFinder {
   void first_guess(std::span<Bracket> brackets);
   void refine(std::span<Bracket> brackets);
   void bisect(std::span<Bracket> brackets);
+  void normalize(std::span<const Bracket> brackets);
   void append(std::span<const Bracket> brackets, FieldPart& part) const;
 
   const Field* field_ = nullptr;

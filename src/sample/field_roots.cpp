@@ -17,6 +17,16 @@ bool inside(float f) {
   return f < 0.0f;
 }
 
+// As pack_normal() in float.
+PackedNormal pack_normal(float x, float y, float z) {
+  const float scale = 1.0f / (std::abs(x) + std::abs(y) + std::abs(z));
+  float u = x * scale, v = y * scale;
+  const float fu = std::copysign(1.0f - std::abs(v), u), fv = std::copysign(1.0f - std::abs(u), v);
+  u = z < 0 ? fu : u, v = z < 0 ? fv : v;
+  const auto steps = [](float c) { return static_cast<std::uint32_t>(static_cast<int>(c * 32767.0f + 32767.5f)); };
+  return {steps(u) | steps(v) << 16};
+}
+
 float in_cell(float t) {
   return std::clamp(t, 0.0f, 0x1.fffffep-1f);
 }
@@ -54,6 +64,7 @@ void RootFinder::find_batch(std::span<Bracket> brackets, FieldPart& part) {
   } else {
     bisect(brackets);
   }
+  normalize(brackets);
   append(brackets, part);
 }
 
@@ -175,28 +186,41 @@ void RootFinder::bisect(std::span<Bracket> brackets) {
   }
 }
 
+// Unit normals; the edge's axis where f has no gradient, or the surface is a face of the bounds.
+void RootFinder::normalize(std::span<const Bracket> brackets) {
+  for (std::size_t i = 0; i < brackets.size(); ++i) {
+    const Root& root = roots_[i];
+    dx_[i] = root.n[0], dy_[i] = root.n[1], dz_[i] = root.n[2];
+  }
+  for (std::size_t i = 0; i < brackets.size(); ++i) {
+    // Scaled by the largest component first: squares must not overflow.
+    const float largest = std::max(std::max(std::abs(dx_[i]), std::abs(dy_[i])), std::abs(dz_[i]));
+    const float scale = 1.0f / largest, x = dx_[i] * scale, y = dy_[i] * scale, z = dz_[i] * scale;
+    const float inverse = 1.0f / std::sqrt(x * x + y * y + z * z);
+    dx_[i] = x * inverse, dy_[i] = y * inverse, dz_[i] = z * inverse;
+    f_[i] = inverse;
+  }
+  for (std::size_t i = 0; i < brackets.size(); ++i) {
+    if (!roots_[i].made && f_[i] > 0.0f && f_[i] <= 1.0f) continue;
+    const float outward = brackets[i].code.lower_end_inside() ? 1.0f : -1.0f;
+    const unsigned axis = brackets[i].code.axis();
+    dx_[i] = axis == 0 ? outward : 0.0f, dy_[i] = axis == 1 ? outward : 0.0f, dz_[i] = axis == 2 ? outward : 0.0f;
+  }
+}
+
 void RootFinder::append(std::span<const Bracket> brackets, FieldPart& part) const {
   const float h = static_cast<float>(grid_->grid.spacing);
   constexpr float half = brick_size / 2.0f;
   for (std::size_t i = 0; i < brackets.size(); ++i) {
     const EdgeCode code = brackets[i].code;
     const unsigned axis = code.axis();
-    const Root& root = roots_[i];
     float at[3] = {code.i() - half, code.j() - half, code.k() - half};
-    at[axis] += in_cell(root.t);
-    Vec3 normal{root.n[0], root.n[1], root.n[2]};
-    const double length = norm(normal);
-    if (root.made || !(length > 0) || !std::isfinite(length)) {
-      normal = {};
-      normal[static_cast<int>(axis)] = code.lower_end_inside() ? 1 : -1;
-    } else {
-      normal *= 1 / length;
-    }
+    at[axis] += in_cell(roots_[i].t);
     part.x.push_back(at[0] * h), part.y.push_back(at[1] * h), part.z.push_back(at[2] * h);
-    part.area.push_back(static_cast<float>(sample_area(normal, static_cast<int>(axis), h)));
-    part.normal.push_back(pack_normal(normal));
+    part.area.push_back(h * h * std::abs(axis == 0 ? dx_[i] : axis == 1 ? dy_[i] : dz_[i]));
+    part.normal.push_back(pack_normal(dx_[i], dy_[i], dz_[i]));
     part.edge.push_back(code);
-    part.cut_by_bounds = part.cut_by_bounds || root.made;
+    part.cut_by_bounds = part.cut_by_bounds || roots_[i].made;
   }
 }
 

@@ -20,19 +20,26 @@ struct Node {
 // What interval arithmetic says about a cube of grid points.
 enum class Verdict { empty, mixed, unknown };
 
-Verdict judge(const Field& field, const FieldGrid& grid, const Index& corner, unsigned side) {
+// Holds all points that are asked for in the cube: roots and probes are rounded.
+Box cube(const FieldGrid& grid, const Index& corner, unsigned side) {
   Box box;
-  bool within = true;
-  const double slack = 0.01 * grid.grid.spacing;  // roots and probes are rounded
+  const double slack = 0.01 * grid.grid.spacing;
   for (unsigned a = 0; a < 3; ++a) {
-    const auto lo = static_cast<std::int32_t>(corner[a]), hi = static_cast<std::int32_t>(corner[a] + side);
-    if (hi < grid.first[a] || lo > grid.last[a]) return Verdict::empty;
-    within = within && lo >= grid.first[a] && hi <= grid.last[a];
     const auto top = std::min<std::size_t>(corner[a] + side, grid.coordinate[a].size() - 1);
     box.lo[static_cast<int>(a)] = grid.coordinate[a][corner[a]] - slack;
     box.hi[static_cast<int>(a)] = grid.coordinate[a][top] + slack;
   }
-  const Interval range = field.evaluate(box);
+  return box;
+}
+
+Verdict judge(const Field& field, const FieldGrid& grid, const Index& corner, unsigned side) {
+  bool within = true;
+  for (unsigned a = 0; a < 3; ++a) {
+    const auto lo = static_cast<std::int32_t>(corner[a]), hi = static_cast<std::int32_t>(corner[a] + side);
+    if (hi < grid.first[a] || lo > grid.last[a]) return Verdict::empty;
+    within = within && lo >= grid.first[a] && hi <= grid.last[a];
+  }
+  const Interval range = field.evaluate(cube(grid, corner, side));
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (!(range.lo > -infinity) && !(range.hi < infinity)) return Verdict::unknown;
   // The field itself is rounded to float; what is that close to 0 is better looked at.
@@ -81,8 +88,10 @@ struct Worker {
               half, part);
   }
 
-  void sample(const Field& field, const FieldGrid& grid, const Node& node, FieldPart& part) {
+  void sample(const Field& whole, const FieldGrid& grid, const Node& node, FieldPart& part) {
     brackets.clear();
+    const std::shared_ptr<const Field> local = whole.specialized(cube(grid, node.corner, kNode));
+    const Field& field = local ? *local : whole;
     const unsigned half = kNode / 2;
     for (unsigned c = 0; c < 8; ++c)
       descend(field, grid,

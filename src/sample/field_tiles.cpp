@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -46,21 +47,30 @@ bool TileScanner::evaluate(const Field& field, const FieldGrid& grid, const std:
   const std::size_t count = std::size_t{points_} * points_ * points_;
   x_.resize(count), y_.resize(count), z_.resize(count), f_.resize(count);
   inside_.resize(count + 8);
-  const float* zs = &grid.coordinate[2][corner[2]];
-  std::size_t at = 0;
-  for (unsigned i = 0; i < points_; ++i)
-    for (unsigned j = 0; j < points_; ++j) {
-      const float x = grid.coordinate[0][corner[0] + i], y = grid.coordinate[1][corner[1] + j];
-      for (unsigned k = 0; k < points_; ++k, ++at) x_[at] = x, y_[at] = y, z_[at] = zs[k];
-    }
+  // One line along z, then one sheet of lines along y, then all sheets.
+  const std::size_t sheet = std::size_t{points_} * points_;
+  for (unsigned j = 0; j < points_; ++j) {
+    std::copy_n(&grid.coordinate[2][corner[2]], points_, &z_[j * points_]);
+    std::fill_n(&y_[j * points_], points_, grid.coordinate[1][corner[1] + j]);
+  }
+  for (unsigned i = 0; i < points_; ++i) {
+    std::fill_n(&x_[i * sheet], sheet, grid.coordinate[0][corner[0] + i]);
+    if (i == 0) continue;
+    std::copy_n(&y_[0], sheet, &y_[i * sheet]);
+    std::copy_n(&z_[0], sheet, &z_[i * sheet]);
+  }
   field.evaluate({x_, y_, z_}, f_);
-  std::size_t negative = 0;
-  for (std::size_t i = 0; i < count; ++i) negative += inside_[i] = f_[i] < 0.0f ? 1 : 0;
+  std::uint8_t any = 0, all = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t inside = f_[i] < 0.0f ? 1 : 0;
+    inside_[i] = inside;
+    any |= inside, all &= inside;
+  }
   bool within = true;
   for (unsigned a = 0; a < 3; ++a)
     within = within && grid.within(a, static_cast<std::int32_t>(corner[a])) &&
              grid.within(a, static_cast<std::int32_t>(corner[a] + side));
-  return negative != 0 && (negative != count || !within);
+  return any != 0 && (all == 0 || !within);
 }
 
 void TileScanner::scan(const Field& field, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,

@@ -256,7 +256,15 @@ RayCounts scan_slab(const Lattice& lattice, const Mesh& mesh, int axis, std::siz
   RayCounts counts;
   scratch.hits.clear();
   SlabScanner scanner(lattice, mesh, axis, index, scratch);
-  for (std::uint32_t i = bins.begin[index]; i < bins.begin[index + 1]; ++i) scanner.scan(bins.triangles[i]);
+  const std::span<const std::uint32_t> list =
+      std::span(bins.triangles).subspan(bins.begin[index], bins.begin[index + 1] - bins.begin[index]);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    // Triangles and vertices lie anywhere in memory: have them fetched while others are scanned.
+    if (i + 16 < list.size()) __builtin_prefetch(&mesh.triangles[list[i + 16]]);
+    if (i + 8 < list.size())
+      for (const std::uint32_t v : mesh.triangles[list[i + 8]]) __builtin_prefetch(&lattice.points[v]);
+    scanner.scan(list[i]);
+  }
   if (scratch.hits.empty()) return counts;
   slab.first = static_cast<std::uint32_t>(scanner.p_begin());
   const std::size_t rays = static_cast<std::size_t>(scanner.p_end() - scanner.p_begin()) * brick_size;
