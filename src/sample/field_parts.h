@@ -59,7 +59,7 @@ class TileScanner {
   std::vector<std::uint8_t> inside_;
 };
 
-/// Finds where f = 0 on each bracket, to 1e-4 cells, with its normal, and appends the samples to `part`.
+/// Finds where f = 0 on each bracket, to 1e-4 cells, with its normal, and fills in the arrays of `part`.
 /// Fields without gradient are bisected to 2^-12 cells and get the edge's axis as their normal.
 class RootFinder {
  public:
@@ -71,7 +71,7 @@ class RootFinder {
     float n[3] = {};
     bool made = false;
   };
-  void find_batch(std::span<Bracket> brackets, FieldPart& part);
+  void find_batch(std::span<Bracket> brackets, std::size_t first, FieldPart& part);
   void place(std::size_t slot, const Bracket& bracket, float t);
   void evaluate(std::size_t count);
   void clip_to_bounds(std::span<Bracket> brackets);
@@ -79,7 +79,7 @@ class RootFinder {
   void refine(std::span<Bracket> brackets);
   void bisect(std::span<Bracket> brackets);
   void normalize(std::span<const Bracket> brackets);
-  void append(std::span<const Bracket> brackets, FieldPart& part) const;
+  void append(std::span<const Bracket> brackets, std::size_t first, FieldPart& part) const;
 
   const Field* field_ = nullptr;
   const FieldGrid* grid_ = nullptr;

@@ -48,11 +48,13 @@ void narrow(Bracket& b, float t, float f) {
 
 void RootFinder::find(const Field& field, const FieldGrid& grid, std::vector<Bracket>& brackets, FieldPart& part) {
   field_ = &field, grid_ = &grid, part_ = &part;
+  for (std::vector<float>* v : {&part.x, &part.y, &part.z, &part.area}) v->resize(brackets.size());
+  part.normal.resize(brackets.size()), part.edge.resize(brackets.size());
   for (std::size_t begin = 0; begin < brackets.size(); begin += kBatch)
-    find_batch(std::span(brackets).subspan(begin, std::min(kBatch, brackets.size() - begin)), part);
+    find_batch(std::span(brackets).subspan(begin, std::min(kBatch, brackets.size() - begin)), begin, part);
 }
 
-void RootFinder::find_batch(std::span<Bracket> brackets, FieldPart& part) {
+void RootFinder::find_batch(std::span<Bracket> brackets, std::size_t first, FieldPart& part) {
   const std::size_t n = brackets.size();
   roots_.assign(n, Root{});
   active_.clear();
@@ -65,7 +67,7 @@ void RootFinder::find_batch(std::span<Bracket> brackets, FieldPart& part) {
     bisect(brackets);
   }
   normalize(brackets);
-  append(brackets, part);
+  append(brackets, first, part);
 }
 
 // Writes the point at t on the bracket's edge into the batch.
@@ -208,7 +210,7 @@ void RootFinder::normalize(std::span<const Bracket> brackets) {
   }
 }
 
-void RootFinder::append(std::span<const Bracket> brackets, FieldPart& part) const {
+void RootFinder::append(std::span<const Bracket> brackets, std::size_t first, FieldPart& part) const {
   const float h = static_cast<float>(grid_->grid.spacing);
   constexpr float half = brick_size / 2.0f;
   for (std::size_t i = 0; i < brackets.size(); ++i) {
@@ -216,10 +218,11 @@ void RootFinder::append(std::span<const Bracket> brackets, FieldPart& part) cons
     const unsigned axis = code.axis();
     float at[3] = {code.i() - half, code.j() - half, code.k() - half};
     at[axis] += in_cell(roots_[i].t);
-    part.x.push_back(at[0] * h), part.y.push_back(at[1] * h), part.z.push_back(at[2] * h);
-    part.area.push_back(h * h * std::abs(axis == 0 ? dx_[i] : axis == 1 ? dy_[i] : dz_[i]));
-    part.normal.push_back(pack_normal(dx_[i], dy_[i], dz_[i]));
-    part.edge.push_back(code);
+    const std::size_t out = first + i;
+    part.x[out] = at[0] * h, part.y[out] = at[1] * h, part.z[out] = at[2] * h;
+    part.area[out] = h * h * std::abs(axis == 0 ? dx_[i] : axis == 1 ? dy_[i] : dz_[i]);
+    part.normal[out] = pack_normal(dx_[i], dy_[i], dz_[i]);
+    part.edge[out] = code;
     part.cut_by_bounds = part.cut_by_bounds || roots_[i].made;
   }
 }

@@ -97,8 +97,6 @@ struct Worker {
       descend(field, grid,
               {node.corner[0] + (c & 1) * half, node.corner[1] + (c >> 1 & 1) * half, node.corner[2] + (c >> 2) * half},
               half, part);
-    for (std::vector<float>* v : {&part.x, &part.y, &part.z, &part.area}) v->reserve(brackets.size());
-    part.normal.reserve(brackets.size()), part.edge.reserve(brackets.size());
     roots.find(field, grid, brackets, part);
   }
 };

@@ -16,6 +16,21 @@ unsigned pack_bytes(const std::uint8_t* bytes) {
   return static_cast<unsigned>(v * 0x0102040810204080ull >> 56);
 }
 
+struct Marks {
+  bool any, all;
+};
+
+// Pointers of their own, since bytes may alias anything and the loop is to be vectorized.
+Marks mark_inside(const float* __restrict f, std::uint8_t* __restrict inside, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) inside[i] = f[i] < 0.0f ? 1 : 0;
+  std::uint8_t any = 0, all = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    any = static_cast<std::uint8_t>(any | inside[i]);
+    all = static_cast<std::uint8_t>(all & inside[i]);
+  }
+  return {any != 0, all != 0};
+}
+
 }  // namespace
 
 FieldGrid make_field_grid(const Grid& grid, const Box& bounds) {
@@ -60,17 +75,12 @@ bool TileScanner::evaluate(const Field& field, const FieldGrid& grid, const std:
     std::copy_n(&z_[0], sheet, &z_[i * sheet]);
   }
   field.evaluate({x_, y_, z_}, f_);
-  std::uint8_t any = 0, all = 1;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t inside = f_[i] < 0.0f ? 1 : 0;
-    inside_[i] = inside;
-    any |= inside, all &= inside;
-  }
+  const auto [any, all] = mark_inside(f_.data(), inside_.data(), count);
   bool within = true;
   for (unsigned a = 0; a < 3; ++a)
     within = within && grid.within(a, static_cast<std::int32_t>(corner[a])) &&
              grid.within(a, static_cast<std::int32_t>(corner[a] + side));
-  return any != 0 && (all == 0 || !within);
+  return any && !(all && within);
 }
 
 void TileScanner::scan(const Field& field, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
@@ -94,13 +104,19 @@ void TileScanner::scan_brick(const FieldGrid& grid, const std::array<std::uint32
   const std::size_t base = offset[0] * stride[0] + offset[1] * stride[1] + offset[2];
   // Inside along z, in the bits of mask[i][j]; points beyond the bounds are outside.
   unsigned mask[9][9];
-  for (int i = 0; i < 9; ++i)
-    for (int j = 0; j < 9; ++j) {
-      const std::uint8_t* bytes =
-          &inside_[base + static_cast<unsigned>(i) * stride[0] + static_cast<unsigned>(j) * stride[1]];
-      const bool within = grid.within(0, start[0] + i) && grid.within(1, start[1] + j);
-      mask[i][j] = within ? (pack_bytes(bytes) | static_cast<unsigned>(bytes[8]) << 8) & within_k : 0u;
+  bool within_j[9];
+  for (int j = 0; j < 9; ++j) within_j[j] = grid.within(1, start[1] + j);
+  unsigned any = 0, all = ~0u;
+  for (unsigned i = 0; i < 9; ++i) {
+    const bool within_i = grid.within(0, start[0] + static_cast<int>(i));
+    for (unsigned j = 0; j < 9; ++j) {
+      const std::uint8_t* bytes = &inside_[base + i * stride[0] + j * stride[1]];
+      const unsigned bits = pack_bytes(bytes) | static_cast<unsigned>(bytes[8]) << 8;
+      mask[i][j] = within_i && within_j[j] ? bits & within_k : 0u;
+      any |= mask[i][j], all &= mask[i][j];
     }
+  }
+  if (any == 0 || all == 511) return;
   const std::size_t first = brackets.size();
   for (unsigned axis = 0; axis < 3; ++axis)
     for (unsigned i = 0; i < 8; ++i)
