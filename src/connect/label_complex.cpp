@@ -7,25 +7,13 @@
 
 #include "connect/brick_cubes.h"
 #include "connect/dual_polygons.h"
+#include "connect/union_find.h"
 
 namespace evenmesh {
 namespace {
 
 using Index = std::uint32_t;
 constexpr double tiny_piece = 0.1;  ///< of a mean cell
-
-Index find_root(std::vector<Index>& parent, Index i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-/// The smaller index becomes the root, so that roots do not depend on the order of unions.
-void unite(std::vector<Index>& parent, Index a, Index b) {
-  a = find_root(parent, a), b = find_root(parent, b);
-  if (a < b)
-    parent[b] = a;
-  else
-    parent[a] = b;
-}
 
 /// What one pass over all cubes collects.
 class Complex {

@@ -25,9 +25,6 @@ struct LabelComplex {
   std::vector<CellPiece> pieces;          ///< pieces that became cells of their own, in order of new label
   std::int64_t surface_euler = 0;         ///< χ of the sampled surface; the mesh must have it (dust apart)
   std::vector<std::uint32_t> defects;     ///< labels whose cell is not a disk or meets another along several arcs: seeds are needed
-  std::vector<std::uint32_t> dust;        ///< labels on pieces of surface too small to be meshed
-  std::size_t dust_components = 0;        ///< number of such pieces of surface
-  std::int64_t dust_euler = 0;            ///< their share of surface_euler
 };
 
 /// Connects the cells of `labels` (one per sample, below `seeds.size()`; changed where cells are split).

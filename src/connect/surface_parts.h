@@ -1,0 +1,22 @@
+#pragma once
+/// Connected pieces of a sampled surface.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/parallel.h"
+#include "sample/sample_set.h"
+
+namespace evenmesh {
+
+struct SurfaceParts {
+  std::vector<std::uint32_t> part;  ///< of every sample, numbered from 0 by first sample
+  std::vector<double> area;         ///< of every part, model units squared
+};
+/// Cost: about 50 ns per sample.
+SurfaceParts surface_parts(const SampleSet& samples, Run& run);
+
+/// Leaves out the parts with less than `least_area`; returns how many.
+std::size_t drop_dust(SampleSet& samples, double least_area, Run& run);
+
+}  // namespace evenmesh

@@ -1,0 +1,23 @@
+#pragma once
+/// The loop between cells and triangles: connect, insert seeds where the topology needs them, until two-manifold.
+
+#include "connect/label_complex.h"
+#include "cvt/balance.h"
+#include "evenmesh/mesh_shape.h"
+#include "pipeline/stages.h"
+
+namespace evenmesh {
+
+struct ConnectedCells {
+  std::vector<Vec3> seeds;              ///< one per label
+  std::vector<std::uint32_t> labels;    ///< one per sample
+  std::vector<Triangle> triangles;      ///< of labels
+  bool two_manifold = false;
+};
+
+/// Balances about `count` seeds on `samples` (dust is removed from them) and connects their cells; the report gets counts,
+/// energies and notices. The vertex count is met by starting with fewer seeds where thin walls split cells.
+ConnectedCells balance_and_connect(SampleSet& samples, std::size_t count, const MeshOptions& options, Stages& stages, Report& report,
+                                   Run& run);
+
+}  // namespace evenmesh

@@ -1,0 +1,147 @@
+#include "evenmesh/mesh_shape.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <cmath>
+
+#include "pipeline/cells_to_mesh.h"
+#include "pipeline/fineness.h"
+#include "refine/flips.h"
+#include "refine/placement.h"
+#include "refine/polish.h"
+#include "refine/projector.h"
+#include "refine/untangle.h"
+#include "sample/sample.h"
+#include "shape/bounds.h"
+
+namespace evenmesh {
+namespace {
+
+constexpr std::size_t scouting_resolution = 96;
+
+void check(const MeshOptions& o) {
+  if (o.vertices && o.edge_length) throw InvalidInput("give a vertex count or an edge length, not both");
+  if (o.vertices && (*o.vertices < 4 || *o.vertices > 1'000'000'000)) throw InvalidInput("the vertex count must lie in [4, 1e9]");
+  if (o.edge_length && !(*o.edge_length > 0 && std::isfinite(*o.edge_length))) throw InvalidInput("the edge length must be a number above 0");
+  if (o.resolution && (*o.resolution < 8 || *o.resolution > 8192)) throw InvalidInput("the resolution must lie in [8, 8192]");
+  if (o.iterations && *o.iterations > 10'000) throw InvalidInput("the iterations must lie in [0, 10000]");
+  if (!(o.tolerance > 0 && o.tolerance < 1)) throw InvalidInput("the tolerance must lie in (0, 1)");
+  if (o.bounds && o.bounds->empty()) throw InvalidInput("the bounds are empty: each lower limit must be below its upper one");
+}
+
+class Job {
+ public:
+  Job(const Shape& shape, const MeshOptions& options, Run& run) : shape_(shape), options_(options), run_(run), stages_(run, report_) {}
+
+  MeshResult result() {
+    sample();
+    ConnectedCells cells = balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
+    Mesh mesh = stages_.stage("place", 0.1, [&] { return place(cells); });
+    stages_.stage("refine", 0.05, [&] { refine(mesh); });
+    stages_.stage("measure", 0.05, [&] { finish(mesh, cells.two_manifold); });
+    run_.report("done", 1);
+    return {std::move(mesh), std::move(report_)};
+  }
+
+ private:
+  void sample() {
+    if (options_.bounds) {
+      if (const Mesh* mesh = shape_.mesh(); mesh == nullptr || !contains(*options_.bounds, shape_.bounds)) shape_.bounds = *options_.bounds;
+    } else if (shape_.bounds.empty()) {
+      shape_.bounds = stages_.stage("sample", 0, [&] { return find_bounds(*shape_.field()); });
+    }
+    const Box& bounds = shape_.bounds;
+    samples_ = stages_.stage("sample", 0.02, [&] { return sample_shape(shape_, make_grid(bounds, scouting_resolution), run_); });
+    const SurfaceScale scale = stages_.stage("sample", 0, [&] { return measure_scale(samples_, run_); });
+    const Fineness fineness = choose_fineness(scale, bounds, options_, report_.notices);
+    samples_ = stages_.stage("sample", 0.1, [&] { return sample_shape(shape_, make_grid(bounds, fineness.resolution), run_); });
+    report_.seeds_asked = fineness.vertices;
+    report_.resolution = fineness.resolution;
+    report_.spacing = samples_.grid.spacing;
+    report_.samples = samples_.size();
+    report_.disagreements = samples_.disagreements;
+    if (samples_.disagreements > 0)
+      notice(false, fmt::format("the input is not closed: inside or outside was settled by vote at {} grid points", samples_.disagreements));
+    if (samples_.cut_by_bounds && !shape_.capped_by_bounds) notice(false, "the solid leaves its bounds and is closed there");
+  }
+
+  static bool contains(const Box& outer, const Box& inner) { return outer.contains(inner.lo) && outer.contains(inner.hi); }
+
+  /// Vertices from cells, onto the surface; labels without triangles are left out.
+  Mesh place(const ConnectedCells& cells) {
+    const std::vector<CellShape> shapes = cell_shapes(samples_, cells.labels, cells.seeds, run_);
+    std::vector<std::uint32_t> index(cells.seeds.size(), 0xffffffffu);
+    Mesh mesh;
+    for (const Triangle& t : cells.triangles)
+      for (const std::uint32_t l : t)
+        if (index[l] == 0xffffffffu) index[l] = 0;
+    for (std::size_t l = 0; l < index.size(); ++l)
+      if (index[l] == 0) {
+        index[l] = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(options_.placement == Placement::quadric ? shapes[l].vertex : shapes[l].centroid);
+      }
+    mesh.triangles.reserve(cells.triangles.size());
+    for (const Triangle& t : cells.triangles) mesh.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
+
+    edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
+    if (options_.placement != Placement::centroid) {
+      projector_ = make_projector(shape_, shape_.bounds, run_);
+      if (projector_)
+        parallel_for(run_, mesh.vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t v = begin; v < end; ++v) mesh.vertices[v] = projector_->project(mesh.vertices[v], 0.5 * edge_);
+        });
+    }
+    return mesh;
+  }
+
+  void refine(Mesh& mesh) {
+    if (!measure_quality(mesh, run_).two_manifold()) return;
+    flip_to_delaunay(mesh);
+    polish(mesh, projector_.get(), {}, run_);
+    flip_to_delaunay(mesh);
+    report_.self_intersections = untangle(mesh, projector_.get(), [&](const Mesh& m) { return self_intersections(m, run_); }, run_);
+  }
+
+  void finish(const Mesh& mesh, bool two_manifold) {
+    report_.quality = measure_quality(mesh, run_);
+    const MeshQuality& q = report_.quality;
+    report_.seeds = q.vertices;
+    report_.alpha = static_cast<double>(report_.samples) / static_cast<double>(std::max<std::size_t>(1, q.vertices));
+    report_.evaluations = report_.energies.size();
+    if (q.faces == 0) throw UnusableInput("no piece of the surface is large enough for this fineness: ask for more vertices");
+    if (report_.dropped_components > 0)
+      notice(false, fmt::format("{} pieces of surface smaller than a cell were left out", report_.dropped_components));
+    if (!two_manifold || !q.closed() || !q.two_manifold() || !q.oriented())
+      notice(true, fmt::format("the mesh is not a closed two-manifold: {} boundary and {} non-manifold edges; ask for more vertices",
+                               q.boundary_edges, q.non_manifold_edges));
+    if (report_.self_intersections > 0)
+      notice(true, fmt::format("{} pairs of triangles intersect each other; ask for more vertices", report_.self_intersections));
+    const double asked = static_cast<double>(report_.seeds_asked), made = static_cast<double>(q.vertices);
+    if (std::abs(made - asked) > 0.005 * asked)
+      notice(false, fmt::format("{:.0f} vertices instead of {:.0f}: the topology {}", made, asked, made > asked ? "needs more" : "leaves room for fewer"));
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    report_.peak_memory_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+  }
+
+  void notice(bool broken, std::string text) { report_.notices.push_back({broken, std::move(text)}); }
+
+  Shape shape_;
+  const MeshOptions& options_;
+  Run& run_;
+  Report report_;
+  Stages stages_;
+  SampleSet samples_;
+  std::unique_ptr<Projector> projector_;
+  double edge_ = 0;
+};
+
+}  // namespace
+
+MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, Run& run) {
+  check(options);
+  return with_threads(run, [&] { return Job(shape, options, run).result(); });
+}
+
+}  // namespace evenmesh

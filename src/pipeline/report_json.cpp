@@ -1,0 +1,33 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "evenmesh/mesh_shape.h"
+
+namespace evenmesh {
+
+std::string report_json(const Report& r) {
+  // The mesh's figures first, under the same keys as in `info`; the run's after them.
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(quality_json(r.quality));
+  json["self_intersections"] = r.self_intersections;
+  json["seeds"] = r.seeds;
+  json["seeds_asked"] = r.seeds_asked;
+  json["samples"] = r.samples;
+  json["alpha"] = r.alpha;
+  json["resolution"] = r.resolution;
+  json["spacing"] = r.spacing;
+  json["energy_ratio"] = r.energy_ratio;
+  json["energies"] = r.energies;
+  json["evaluations"] = r.evaluations;
+  json["disagreements"] = r.disagreements;
+  json["dropped_components"] = r.dropped_components;
+  json["inserted_seeds"] = r.inserted_seeds;
+  json["regularization_rounds"] = r.regularization_rounds;
+  json["seconds"] = nlohmann::ordered_json::object();
+  for (const auto& [stage, seconds] : r.seconds) json["seconds"][stage] = seconds;
+  json["peak_memory_bytes"] = r.peak_memory_bytes;
+  json["notices"] = nlohmann::ordered_json::array();
+  for (const Notice& notice : r.notices) json["notices"].push_back({{"promise_broken", notice.promise_broken}, {"text", notice.text}});
+  return json.dump(2);
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,24 @@
+#pragma once
+/// The final step onto the surface itself.
+
+#include <memory>
+
+#include "evenmesh/run.h"
+#include "evenmesh/shape.h"
+
+namespace evenmesh {
+
+/// Brings points that are near a surface onto it. Thread-safe.
+class Projector {
+ public:
+  virtual ~Projector() = default;
+  /// The surface point near p; p itself when there is none within `limit` (model units).
+  virtual Vec3 project(const Vec3& p, double limit) const = 0;
+};
+
+/// Closest point of a mesh; f = 0 (and the faces of `bounds`, where the solid is cut) of a field by Newton steps in double
+/// precision; null for indicator functions, which know no distance.
+/// Cost: a microsecond or two per point.
+std::unique_ptr<Projector> make_projector(const Shape& shape, const Box& bounds, Run& run);
+
+}  // namespace evenmesh
