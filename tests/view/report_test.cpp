@@ -41,8 +41,9 @@ TEST(Report, IsOneSelfContainedPage) {
   EXPECT_EQ(count_of(html, "http"), 0u);
   EXPECT_EQ(count_of(html, "<script"), 0u);
   for (const char* tag : {"div", "section", "figure", "table", "svg", "p", "ul", "li", "main", "body", "html"})
-    EXPECT_EQ(count_of(html, "<" + std::string(tag) + ">") + count_of(html, "<" + std::string(tag) + " "),
-              count_of(html, "</" + std::string(tag) + ">"))
+    EXPECT_EQ(count_of(html, std::string("<").append(tag).append(">")) +
+                  count_of(html, std::string("<").append(tag).append(" ")),
+              count_of(html, std::string("</").append(tag).append(">")))
         << tag;
 }
 
