@@ -67,7 +67,7 @@ class SceneReader {
   void walk(const std::vector<std::size_t>& from, const Json& nodes) {
     std::vector<Visit> stack;
     const auto push = [&](const std::vector<std::size_t>& children, std::size_t depth, const Affine& outer) {
-      budget_.spend(children.size());
+      budget_.spend(InstanceBudget::visit * children.size());
       for (auto child = children.rbegin(); child != children.rend(); ++child) stack.push_back({*child, depth, outer});
     };
     push(from, 0, {});
@@ -105,7 +105,7 @@ class SceneReader {
     std::map<std::size_t, std::uint32_t> base_of_accessor;
     for (const Json& primitive : data_.list_in(data_.list("meshes")[mesh], "primitives")) {
       source_.run->throw_if_cancelled();
-      budget_.spend(1);
+      budget_.spend(InstanceBudget::visit);
       const std::size_t mode = data_.index(primitive, "mode", 7).value_or(4);
       if (mode < 4) continue;  // points and lines
       if (!primitive.contains("attributes")) continue;

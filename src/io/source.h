@@ -44,8 +44,14 @@ std::string_view with_unix_lines(std::string_view bytes, std::string& storage);
 /// for more triangles than fit into any memory.
 class InstanceBudget {
  public:
+  /// A visit of a node costs as much as a few elements; in a file it takes more bytes than them, too.
+  static constexpr std::uint64_t visit = 32;
+
   explicit InstanceBudget(const Source& source) : source_(source), left_(1'000'000 + 4 * source.bytes.size()) {}
-  /// @param count  vertices, triangles or instances about to be made
+  /// More bytes were unpacked; even without repetitions they may stand for more elements than the packed file has
+  /// bytes.
+  void add(std::uint64_t bytes) { left_ += bytes; }
+  /// @param count  vertices and triangles about to be made, or `visit`
   void spend(std::uint64_t count);
 
  private:

@@ -191,6 +191,7 @@ class PackageReader {
     const auto* entry = archive_.find(path);
     if (!entry) fail(source_, fmt::format("refers to part {}, which it does not hold", quoted(path)));
     const std::string text = archive_.extract(*entry);
+    budget_.add(text.size());
     const std::string name = fmt::format("{}: {}", source_.name, entry->name);
     return models_.emplace(path, ModelParser({text, name, source_.run}).parse()).first->second;
   }
@@ -202,7 +203,7 @@ class PackageReader {
 
   void place(const Reference& reference, const std::string& here, const Affine& outer, int depth) {
     constexpr int deepest = 200;
-    budget_.spend(1);
+    budget_.spend(InstanceBudget::visit);
     if (depth > deepest) fail(source_, "has components that hold each other, or are nested more than 200 deep");
     const std::string& path = reference.path.empty() ? here : reference.path;
     const Model& part = model(path);

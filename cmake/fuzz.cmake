@@ -1,0 +1,30 @@
+# Fuzzers (libFuzzer, needs clang), one per fuzz/fuzz_NAME.cpp:
+#
+#   cmake -B build-fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DEVENMESH_FUZZ=ON
+#   ninja -C build-fuzz fuzzers
+#   mkdir -p found && build-fuzz/fuzz_ply found tests/corpus/ply -max_total_time=300 -malloc_limit_mb=256
+if(EVENMESH_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    message(FATAL_ERROR "EVENMESH_FUZZ needs clang: configure with -DCMAKE_CXX_COMPILER=clang++")
+  endif()
+  # The rooms are instrumented too; -fsanitize=fuzzer brings main() and belongs to the fuzzers alone.
+  set(sanitize -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g)
+  target_compile_options(evenmesh_flags INTERFACE ${sanitize})
+  target_link_options(evenmesh_flags INTERFACE -fsanitize=address,undefined)
+  add_custom_target(fuzzers)
+  file(GLOB fuzz_sources CONFIGURE_DEPENDS fuzz/fuzz_*.cpp)
+  foreach(source ${fuzz_sources})
+    get_filename_component(name ${source} NAME_WE)
+    add_executable(${name} EXCLUDE_FROM_ALL ${source})
+    target_include_directories(${name} PRIVATE include src)
+    target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+    set(rooms "")
+    foreach(room ${EVENMESH_ROOMS})
+      if(room STREQUAL "io" OR room STREQUAL "shape")
+        list(APPEND rooms evenmesh_${room})
+      endif()
+    endforeach()
+    target_link_libraries(${name} PRIVATE evenmesh_flags ${rooms})
+    add_dependencies(fuzzers ${name})
+  endforeach()
+endif()

@@ -1,0 +1,7 @@
+/// Fuzzes the 3MF reader; seeds are in tests/corpus/3mf.
+
+#include "fuzz_mesh.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return evenmesh::fuzz_mesh(data, size, "fuzz.3mf");
+}
