@@ -7,6 +7,7 @@
 
 #include "pipeline/cells_to_mesh.h"
 #include "pipeline/fineness.h"
+#include "refine/fit.h"
 #include "refine/flips.h"
 #include "refine/placement.h"
 #include "refine/polish.h"
@@ -38,7 +39,7 @@ class Job {
     sample();
     ConnectedCells cells = balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
     Mesh mesh = stages_.stage("place", 0.1, [&] { return place(cells); });
-    stages_.stage("refine", 0.05, [&] { refine(mesh); });
+    stages_.stage("refine", 0.05, [&] { refine(mesh, cells.labels); });
     stages_.stage("measure", 0.05, [&] { finish(mesh, cells.two_manifold); });
     run_.report("done", 1);
     return {std::move(mesh), std::move(report_)};
@@ -71,7 +72,8 @@ class Job {
   /// Vertices from cells, onto the surface; labels without triangles are left out.
   Mesh place(const ConnectedCells& cells) {
     const std::vector<CellShape> shapes = cell_shapes(samples_, cells.labels, cells.seeds, run_);
-    std::vector<std::uint32_t> index(cells.seeds.size(), 0xffffffffu);
+    auto& index = vertex_of_label_;
+    index.assign(cells.seeds.size(), 0xffffffffu);
     Mesh mesh;
     for (const Triangle& t : cells.triangles)
       for (const std::uint32_t l : t)
@@ -95,11 +97,15 @@ class Job {
     return mesh;
   }
 
-  void refine(Mesh& mesh) {
+  void refine(Mesh& mesh, std::vector<std::uint32_t>& labels) {
     if (!measure_quality(mesh, run_).two_manifold()) return;
     flip_to_delaunay(mesh);
-    polish(mesh, projector_.get(), {}, run_);
+    polish(mesh, projector_.get(), run_);
     flip_to_delaunay(mesh);
+    if (options_.placement == Placement::quadric) {
+      for (std::uint32_t& l : labels) l = vertex_of_label_[l];
+      fit_extremes(mesh, samples_, labels, projector_.get(), run_);
+    }
     report_.self_intersections = untangle(mesh, projector_.get(), [&](const Mesh& m) { return self_intersections(m, run_); }, run_);
   }
 
@@ -134,6 +140,7 @@ class Job {
   Stages stages_;
   SampleSet samples_;
   std::unique_ptr<Projector> projector_;
+  std::vector<std::uint32_t> vertex_of_label_;  ///< 0xffffffff: none, its piece of surface is dust
   double edge_ = 0;
 };
 

@@ -10,7 +10,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr double tikhonov = 0.03;  ///< weight of the centroid against the planes
+constexpr double tikhonov = 0.5;  ///< weight of the centroid against the planes
 
 /// Σ w, Σ w d, Σ w n nᵀ (upper triangle), Σ w n (n·d), with d = x − seed.
 struct Quadric {

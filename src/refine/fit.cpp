@@ -1,0 +1,202 @@
+#include "refine/fit.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/parallel.h"
+#include "geometry/triangle.h"
+#include "refine/vertex_rings.h"
+
+namespace evenmesh {
+namespace {
+
+constexpr double worth_fitting = 0.17;    ///< of the edge length
+constexpr double least_score = 0.92;      ///< Q ≥ 0.66, angles ≥ 35°
+constexpr std::size_t samples_per_cell = 20;
+
+/// Some samples of every vertex' cell.
+class CellSamples {
+ public:
+  CellSamples(const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, std::size_t vertices) : start_(vertices + 1, 0) {
+    const std::size_t stride = std::max<std::size_t>(1, samples.size() / (samples_per_cell * std::max<std::size_t>(1, vertices)));
+    const auto each = [&](const auto& visit) {
+      for (std::size_t b = 0; b < samples.blocks.size(); ++b)
+        for (std::size_t i = (samples.blocks[b].begin + stride - 1) / stride * stride; i < samples.blocks[b].end; i += stride)
+          if (vertex_of_sample[i] < vertices) visit(b, i);
+    };
+    each([&](std::size_t, std::size_t i) { ++start_[vertex_of_sample[i] + 1]; });
+    for (std::size_t v = 0; v < vertices; ++v) start_[v + 1] += start_[v];
+    points_.resize(start_.back());
+    std::vector<std::size_t> fill(start_.begin(), start_.end() - 1);
+    each([&](std::size_t b, std::size_t i) {
+      points_[fill[vertex_of_sample[i]]++] = samples.block_center(samples.blocks[b]) + Vec3{samples.x[i], samples.y[i], samples.z[i]};
+    });
+  }
+  std::span<const Vec3> of(std::uint32_t v) const { return {points_.data() + start_[v], start_[v + 1] - start_[v]}; }
+
+ private:
+  std::vector<std::size_t> start_;
+  std::vector<Vec3> points_;
+};
+
+class Fitter {
+ public:
+  Fitter(Mesh& mesh, const CellSamples& cells, const Projector* projector) : mesh_(mesh), cells_(cells), projector_(projector), rings_(mesh) {}
+
+  /// Largest squared distance of a cell's samples from the triangles around its vertex.
+  double deviation(std::uint32_t v) const {
+    double worst = 0;
+    for (const Vec3& p : cells_.of(v)) worst = std::max(worst, squared_distance(p, rings_.triangles(v)));
+    return worst;
+  }
+  double edge_length(std::uint32_t v) const { return rings_.edge_length(v); }
+
+  /// Pulls a vertex of the neighbourhood onto the sample of v's cell that is farthest from the mesh, or as far towards it as
+  /// the triangles allow.
+  bool reach(std::uint32_t v) {
+    const std::optional<Vec3> farthest = farthest_sample(v);
+    if (!farthest) return false;
+    const Vec3 tip = *farthest;
+    std::vector<std::uint32_t> movers = neighbours(v);
+    movers.push_back(v);
+    std::sort(movers.begin(), movers.end(), [&](auto p, auto q) {
+      const double dp = squared_norm(mesh_.vertices[p] - tip), dq = squared_norm(mesh_.vertices[q] - tip);
+      return dp != dq ? dp < dq : p < q;
+    });
+    movers.resize(std::min<std::size_t>(movers.size(), 3));
+    for (const double share : {1.0, 0.75, 0.5})
+      for (const std::uint32_t mover : movers)
+        if (pull(mover, mesh_.vertices[mover] + share * (tip - mesh_.vertices[mover]))) return true;
+    return false;
+  }
+
+  std::vector<std::uint32_t> neighbours(std::uint32_t v) const {
+    std::vector<std::uint32_t> list;
+    for (const std::uint32_t t : rings_.triangles(v))
+      for (const std::uint32_t w : mesh_.triangles[t])
+        if (w != v && std::find(list.begin(), list.end(), w) == list.end()) list.push_back(w);
+    return list;
+  }
+
+ private:
+  double squared_distance(const Vec3& p, std::span<const std::uint32_t> triangles) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t t : triangles) {
+      const Triangle& c = mesh_.triangles[t];
+      nearest = std::min(nearest, squared_norm(p - closest_point_on_triangle(p, mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]])));
+    }
+    return nearest;
+  }
+  std::vector<std::uint32_t> two_rings(std::uint32_t v) const {
+    std::vector<std::uint32_t> list = neighbours(v);
+    for (const std::uint32_t w : std::vector<std::uint32_t>(list))
+      for (const std::uint32_t x : neighbours(w)) list.push_back(x);
+    list.push_back(v);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  }
+  std::vector<std::uint32_t> triangles_around(const std::vector<std::uint32_t>& vertices) const {
+    std::vector<std::uint32_t> list;
+    for (const std::uint32_t w : vertices) list.insert(list.end(), rings_.triangles(w).begin(), rings_.triangles(w).end());
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  }
+  std::optional<Vec3> farthest_sample(std::uint32_t v) const {
+    std::optional<Vec3> farthest;
+    double most = -1;
+    for (const Vec3& p : cells_.of(v))
+      if (const double d = squared_distance(p, rings_.triangles(v)); d > most) most = d, farthest = p;
+    return farthest;
+  }
+  double worst_deviation(std::span<const std::uint32_t> cells) const {
+    double worst = 0;
+    for (const std::uint32_t w : cells) worst = std::max(worst, deviation(w));
+    return worst;
+  }
+
+  /// Puts the vertex there, lets the two rings around it give way, and keeps that if triangles stay good and the mesh comes nearer.
+  bool pull(std::uint32_t mover, const Vec3& target) {
+    const auto region = two_rings(mover);
+    const auto triangles = triangles_around(region);
+    std::vector<Vec3> positions, normals;
+    double floor = least_score;
+    const double before = worst_deviation(region);
+    for (const std::uint32_t w : region) positions.push_back(mesh_.vertices[w]);
+    for (const std::uint32_t t : triangles) {
+      normals.push_back(rings_.normal_of(mesh_.triangles[t]));
+      floor = std::min(floor, rings_.score(mesh_.triangles[t]));
+    }
+    mesh_.vertices[mover] = target;
+    for (int round = 0; round < 6; ++round)
+      for (const std::uint32_t w : region)
+        if (w != mover) give_way(w);
+    bool good = worst_deviation(region) < 0.8 * before;  // squared
+    for (std::size_t i = 0; i < triangles.size() && good; ++i) {
+      const Triangle& t = mesh_.triangles[triangles[i]];
+      good = rings_.score(t) >= floor && dot(rings_.normal_of(t), normals[i]) > 0;
+    }
+    if (good) return true;
+    for (std::size_t i = 0; i < region.size(); ++i) mesh_.vertices[region[i]] = positions[i];
+    return false;
+  }
+
+  /// Half way to the mean of the neighbours, along the surface, if that makes the worst triangle around w better.
+  void give_way(std::uint32_t w) {
+    Vec3& position = mesh_.vertices[w];
+    const Vec3 original = position;
+    const std::vector<Vec3> normals = rings_.normals(w);
+    const double before = rings_.worst_score(w, normals);
+    if (before >= 1) return;
+    Vec3 mean;
+    const auto around = neighbours(w);
+    for (const std::uint32_t x : around) mean += mesh_.vertices[x];
+    mean = mean / static_cast<double>(around.size());
+    const Vec3 n = rings_.normal(w), along = mean - original;
+    const Vec3 step = along - dot(along, n) * n;
+    for (const double share : {0.6, 0.2}) {
+      const Vec3 trial = original + share * step;
+      position = projector_ ? projector_->project(trial, norm(along) + 1e-300) : trial;
+      if (rings_.worst_score(w, normals) > before) return;
+    }
+    position = original;
+  }
+
+  Mesh& mesh_;
+  const CellSamples& cells_;
+  const Projector* projector_;
+  VertexRings rings_;
+};
+
+}  // namespace
+
+std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, const Projector* projector,
+                         Run& run) {
+  const std::size_t count = mesh.vertices.size();
+  const CellSamples cells(samples, vertex_of_sample, count);
+  Fitter fitter(mesh, cells, projector);
+  std::size_t moves = 0;
+  for (int round = 0; round < 3; ++round) {
+    std::vector<double> deviation(count);
+    parallel_for(run, count, 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) deviation[v] = fitter.deviation(static_cast<std::uint32_t>(v));
+    });
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t v = 0; v < count; ++v) {
+      const double limit = worth_fitting * fitter.edge_length(v);
+      if (deviation[v] > limit * limit) order.push_back(v);
+    }
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return deviation[a] != deviation[b] ? deviation[a] > deviation[b] : a < b; });
+    order.resize(std::min(order.size(), std::max<std::size_t>(50, count / 100)));
+    const std::size_t before = moves;
+    for (const std::uint32_t v : order) {
+      run.throw_if_cancelled();
+      moves += fitter.reach(v);
+    }
+    if (moves == before) break;
+  }
+  return moves;
+}
+
+}  // namespace evenmesh
