@@ -131,7 +131,6 @@ void GltfData::read_container() {
 }
 
 void GltfData::parse_json(std::string_view text) {
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   try {
     root_ = Json::parse(text);
   } catch (const Json::exception&) {  // also a number beyond the range of double

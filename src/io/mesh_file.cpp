@@ -33,7 +33,8 @@ Mesh read_as(MeshFormat format, const Source& source) {
   throw InvalidInput("the mesh format is none of the six; take one of MeshFormat");
 }
 
-Mesh parse(const Source& source) {
+Mesh parse(Source source) {
+  if (source.bytes.starts_with("\xef\xbb\xbf")) source.bytes.remove_prefix(3);  // byte order mark of UTF-8
   if (source.bytes.empty()) fail(source, "is empty; export the mesh again");
   std::optional<MeshFormat> format = format_of_content(source.bytes);
   if (!format) format = format_of_name(source.name);

@@ -1,6 +1,8 @@
 /// What the readers make of their formats' forms.
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <bit>
 
@@ -126,6 +128,30 @@ TEST(Read, LongObjInPiecesIsTheSameForAnyThreads) {
 TEST(Read, ErrorsInLongObjNameTheLine) {
   const std::string message = refusal(long_obj(60'000, 200'000), "long.obj");
   EXPECT_TRUE(message.starts_with("long.obj: line 200000: vertex index 99999999 is out of range")) << message;
+}
+
+TEST(Read, ByteOrderMarkIsPassedOver) {
+  for (const char* name : {"ply/ascii.ply", "obj/plain.obj", "off/plain.off", "stl/ascii.stl", "glb/embedded.gltf"}) {
+    SCOPED_TRACE(name);
+    EXPECT_EQ(parse_mesh("\xef\xbb\xbf" + read_bytes(corpus_folder() / name), name).triangles,
+              from_corpus(name).triangles);
+  }
+}
+
+TEST(Read, StandardInput) {
+  const int kept = ::dup(STDIN_FILENO);
+  const int file = ::open((corpus_folder() / "stl/binary.stl").c_str(), O_RDONLY);
+  ASSERT_EQ(::dup2(file, STDIN_FILENO), STDIN_FILENO);
+  EXPECT_EQ(read_mesh("-").triangles, from_corpus("stl/binary.stl").triangles);
+  try {
+    read_mesh("-");  // nothing is left
+    ADD_FAILURE();
+  } catch (const UnusableInput& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("standard input: ")) << error.what();
+  }
+  ::dup2(kept, STDIN_FILENO);
+  ::close(kept);
+  ::close(file);
 }
 
 TEST(Read, CancelledRunThrows) {

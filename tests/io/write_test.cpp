@@ -119,6 +119,16 @@ TEST(WriteFile, DevicesAreWrittenTo) {
   EXPECT_FALSE(fs::is_regular_file("/dev/null"));
 }
 
+TEST(WriteFile, FullDiskIsSaid) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
+  try {
+    write_mesh(tetrahedron(), "/dev/full", MeshFormat::ply);
+    ADD_FAILURE();
+  } catch (const UnusableInput& error) {
+    EXPECT_NE(std::string(error.what()).find("the disk is full"), std::string::npos) << error.what();
+  }
+}
+
 TEST(WriteFile, PipesAreWrittenTo) {
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
