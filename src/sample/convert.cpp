@@ -213,9 +213,8 @@ class BlockWriter {
   void write(const Placed& c, std::uint32_t out) {
     constexpr float half = brick_size / 2.0f;
     const unsigned axis = c.code.axis();
-    float at[3] = {c.code.i() - half, c.code.j() - half, c.code.k() - half};
-    at[axis] += c.t;
-    x_[out] = at[0] * h_, y_[out] = at[1] * h_, z_[out] = at[2] * h_;
+    const auto along = [&](unsigned a, unsigned cell) { return (cell - half + (axis == a ? c.t : 0.0f)) * h_; };
+    x_[out] = along(0, c.code.i()), y_[out] = along(1, c.code.j()), z_[out] = along(2, c.code.k());
     edge_[out] = c.code;
     source_[out] = c.source;
     const SourceNormal& source = normals_[c.source];
@@ -255,7 +254,8 @@ SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const Run& run)
     for (std::size_t b = begin; b < end; ++b) {
       std::uint32_t out = set.blocks[b].begin;
       for (std::uint32_t i = first[b]; i < first[b + 1]; ++i) {
-        const Piece& piece = pieces[i];
+        const Piece &piece = pieces[i], &ahead = pieces[std::min<std::size_t>(i + 3, pieces.size() - 1)];
+        __builtin_prefetch(&placed[static_cast<std::size_t>(ahead.axis())][ahead.slab].crossings[ahead.begin]);
         const PlacedSlab& slab = placed[static_cast<std::size_t>(piece.axis())][piece.slab];
         writer.write({slab.crossings.get() + piece.begin, piece.end - piece.begin}, out);
         out += piece.end - piece.begin;

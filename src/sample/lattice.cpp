@@ -58,6 +58,7 @@ void snap_vertices(Lattice& lattice, const Mesh& mesh, const Grid& grid, const R
 // Largest number of bits for which the mesh fits, and whether it leaves the range.
 void choose_scale(Lattice& lattice, const Mesh& mesh, const Grid& grid, bool bounded) {
   const Box box = mesh.bounds();
+  if (box.empty()) return;
   double reach = 0;
   bool outside = false;
   for (int a = 0; a < 3; ++a) {

@@ -133,6 +133,42 @@ TEST(SampleMesh, ClosedTangledMeshesOnGridPointsNeedNoVote) {
     }
 }
 
+// Planes so steep that floating point says nothing about where a ray meets them, through grid points besides.
+TEST(SampleMesh, NeedlesAlongTheGridNeedNoVote) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Random random(seed);
+    Mesh mesh = make_icosphere(1);
+    for (Vec3& v : mesh.vertices) {
+      v.x = 3 + double(random.below(4000));
+      for (int a = 1; a < 3; ++a) v[a] = 3 + double(random.below(3)) + 0x1p-16 * double(random.below(3));
+    }
+    const SampleSet set = on_grid(mesh, {{0, 0, 0}, 1.0, {4010, 10, 10}});
+    expect_one_sign_grid(set);
+    EXPECT_EQ(set.disagreements, 0u);
+    for (Vec3& v : mesh.vertices) v = {v.y, v.z, v.x};
+    expect_one_sign_grid(on_grid(mesh, {{0, 0, 0}, 1.0, {10, 10, 4010}}));
+  }
+}
+
+// Seen along x, the triangle abc has the smallest area there is, and the grid point (5, 5) lies on its edge ab.
+TEST(SampleMesh, TheSteepestPlanesNeedNoVote) {
+  Random random(3);
+  const double unit = 0x1p-16;
+  for (int i = 0; i < 16; ++i) {
+    Mesh mesh;
+    const auto at = [&](double y, double z) { return Vec3{3 + double(random.below(4000)), 5 + y, 5 + z}; };
+    const double side = i % 2 == 0 ? 1 : -1;
+    mesh.vertices = {at(-65537 * unit, -65536 * unit), at(65537 * unit, 65536 * unit),
+                     at(side * 65536 * unit, side * 65535 * unit), at(-2, 1.5)};
+    mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+    if (i % 4 < 2)
+      for (Vec3& v : mesh.vertices) std::swap(v.y, v.z);
+    const SampleSet set = on_grid(mesh, {{0, 0, 0}, 1.0, {4010, 10, 10}});
+    expect_one_sign_grid(set);
+    EXPECT_EQ(set.disagreements, 0u);
+  }
+}
+
 TEST(SampleMesh, SliversAndTinyTrianglesNeedNoVote) {
   // Triangles far below the lattice, and far longer than wide.
   Mesh mesh = make_icosphere(5, 1.5);
