@@ -1,6 +1,7 @@
 #include "refine/fit.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "core/parallel.h"
@@ -12,6 +13,8 @@ namespace {
 
 constexpr double worth_fitting = 0.17;    ///< of the edge length
 constexpr double least_score = 0.92;      ///< Q ≥ 0.66, angles ≥ 35°
+constexpr double most_lift = 0.1;         ///< of the edge length
+constexpr int reaching_rounds = 3, lifting_rounds = 2;
 constexpr std::size_t samples_per_cell = 20;
 
 /// Some samples of every vertex' cell.
@@ -67,6 +70,40 @@ class Fitter {
     for (const double share : {1.0, 0.75, 0.5})
       for (const std::uint32_t mover : movers)
         if (pull(mover, mesh_.vertices[mover] + share * (tip - mesh_.vertices[mover]))) return true;
+    return false;
+  }
+
+  /// Lifts the triangle under the farthest sample of v's cell half way towards it.
+  bool lift(std::uint32_t v) {
+    const std::optional<Vec3> tip = farthest_sample(v);
+    if (!tip) return false;
+    std::uint32_t nearest = 0;
+    Vec3 foot;
+    double distance = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t t : rings_.triangles(v)) {
+      const Triangle& c = mesh_.triangles[t];
+      const Vec3 q = closest_point_on_triangle(*tip, mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]]);
+      if (const double d = squared_norm(*tip - q); d < distance) distance = d, nearest = t, foot = q;
+    }
+    const Triangle corners = mesh_.triangles[nearest];
+    const double edge = rings_.edge_length(v);
+    Vec3 step = 0.5 * (*tip - foot);
+    if (norm(step) > most_lift * edge) step *= most_lift * edge / norm(step);
+    std::vector<std::uint32_t> region;
+    for (const std::uint32_t c : corners)
+      for (const std::uint32_t w : two_rings(c)) region.push_back(w);
+    std::sort(region.begin(), region.end());
+    region.erase(std::unique(region.begin(), region.end()), region.end());
+    const double before = worst_deviation(region);
+    const std::array<Vec3, 3> original = {mesh_.vertices[corners[0]], mesh_.vertices[corners[1]], mesh_.vertices[corners[2]]};
+    std::array<std::vector<Vec3>, 3> normals;
+    std::array<double, 3> floor;
+    for (int c = 0; c < 3; ++c) normals[c] = rings_.normals(corners[c]), floor[c] = std::min(least_score, rings_.worst_score(corners[c], normals[c]));
+    for (const std::uint32_t c : corners) mesh_.vertices[c] += step;
+    bool good = worst_deviation(region) < 0.9 * before;
+    for (int c = 0; c < 3; ++c) good = good && rings_.worst_score(corners[c], normals[c]) >= floor[c];
+    if (good) return true;
+    for (int c = 0; c < 3; ++c) mesh_.vertices[corners[c]] = original[c];
     return false;
   }
 
@@ -177,7 +214,7 @@ std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const s
   const CellSamples cells(samples, vertex_of_sample, count);
   Fitter fitter(mesh, cells, projector);
   std::size_t moves = 0;
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < reaching_rounds + lifting_rounds; ++round) {
     std::vector<double> deviation(count);
     parallel_for(run, count, 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) deviation[v] = fitter.deviation(static_cast<std::uint32_t>(v));
@@ -192,9 +229,9 @@ std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const s
     const std::size_t before = moves;
     for (const std::uint32_t v : order) {
       run.throw_if_cancelled();
-      moves += fitter.reach(v);
+      moves += round < reaching_rounds ? fitter.reach(v) : fitter.lift(v);
     }
-    if (moves == before) break;
+    if (moves == before && round >= reaching_rounds) break;
   }
   return moves;
 }
