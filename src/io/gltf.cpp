@@ -1,8 +1,8 @@
 /// glTF 2.0 (Khronos; ISO/IEC 12113): GLB and .gltf with embedded buffers. Triangles, strips and fans of the scene's
 /// nodes, placed; materials, skins, morphs and animations are passed over.
 ///
-/// The reader is small and its own because tinygltf 2.7 leaves its checked containers' exceptions uncaught on damaged
-/// files and still leaves every bound of the data to its caller.
+/// The reader is small and its own because tinygltf 2.7 lets exceptions of the standard library escape on damaged files
+/// and leaves every bound of the data to its caller.
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 /// materials and slices are passed over. Of the production extension, components in other parts of the package are
 /// followed.
 ///
-/// The reader is small and its own because lib3mf 1.8 leaks memory on damaged packages and reads one object per call.
+/// The reader is small and its own because lib3mf 1.8 was seen to leak memory on damaged packages.
 
 #include <fmt/format.h>
 

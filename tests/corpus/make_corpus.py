@@ -228,6 +228,11 @@ def package(resources, build, name="3D/3dmodel.model", more=(), **options):
     return zip_file([("_rels/.rels", RELS % name), (name, model(resources, build)), *more], **options)
 
 
+# A model outside of its package: no mesh file, but a seed for the fuzzer, which wraps it.
+SEED = ('<object id="2" type="model"><components><component p:path="/3D/3dmodel.model" objectid="1"/>'
+        "<component objectid='1' transform='1 0 0 0 1 0 0 0 1 5 0 0'/></components></object>")
+save("3mf/bad_plain_model.xml", model(f'<object id="1" type="model">{MESH}</object>' + SEED,
+                                      '<item objectid="2" transform="-1 0 0 0 2 0 0 0 1 0 0 0"/>'))
 ONE = f'<object id="1" type="model">{MESH}</object>'
 ITEM = '<item objectid="1"/>'
 save("3mf/deflated.3mf", package(ONE, ITEM))

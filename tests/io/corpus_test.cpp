@@ -4,6 +4,7 @@
 
 #include "core/random.h"
 #include "io/bytes.h"
+#include "io/zip.h"
 #include "io_testing.h"
 
 namespace evenmesh::testing_io {
@@ -107,6 +108,20 @@ TEST(Corpus, MutatedFilesGiveAValidMeshOrASentence) {
     }
   }
   EXPECT_GT(parsed, 0u);  // otherwise the mutations would be too coarse to get anywhere
+}
+
+TEST(Corpus, MutatedModelsInSoundPackagesGiveAValidMeshOrASentence) {
+  const std::string model = read_bytes(corpus_folder() / "3mf" / "bad_plain_model.xml");
+  const auto wrapped = [](const std::string& text) { return zip_bytes({{"3D/3dmodel.model", text}}); };
+  expect_valid(parse_mesh(wrapped(model), "model.3mf"));
+  Random random(20240602);
+  for (int round = 0; round < 1000; ++round) {
+    try {
+      expect_valid(parse_mesh(wrapped(mutate(model, {model}, random)), "model.3mf"));
+    } catch (const UnusableInput&) {
+    }
+    ASSERT_FALSE(::testing::Test::HasFatalFailure());
+  }
 }
 
 }  // namespace
