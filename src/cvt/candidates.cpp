@@ -35,64 +35,25 @@ class SeedGrid {
     }
   }
 
-  struct Hit {
-    std::uint32_t seed;
-    double distance;
-    Vec3 offset;  ///< seed − centre
-  };
-
-  /// All seeds within (distance to the second nearest seed) + slack of `center`, ring by ring until nothing nearer can follow.
-  void gather(const Vec3& center, double slack, std::vector<Hit>& hits) const {
-    hits.clear();
-    double best = infinity, second = infinity;
-    std::array<int, 3> c{};
-    double outside = 0;  // largest distance from the centre to the grid along an axis
-    for (int a = 0; a < 3; ++a) {
-      const double at = (center[a] - origin_[a]) / cell_;
-      c[a] = std::clamp(static_cast<int>(std::floor(at)), 0, size_[a] - 1);
-      outside = std::max({outside, -at, at - size_[a]});
-    }
-    const int last_ring = std::max({c[0], size_[0] - 1 - c[0], c[1], size_[1] - 1 - c[1], c[2], size_[2] - 1 - c[2]});
-    for (int ring = 0; ring <= last_ring; ++ring) {
-      if (outside <= 0 && (ring - 1) * cell_ > second + slack) break;
-      visit_ring(c, ring, [&](std::size_t cell) {
-        for (std::uint32_t at = start_[cell]; at < start_[cell + 1]; ++at) {
-          const Vec3 offset = position_[at] - center;
-          const double distance = norm(offset);
-          if (distance > second + slack) continue;
-          hits.push_back({order_[at], distance, offset});
-          if (distance < best)
-            second = best, best = distance;
-          else if (distance < second)
-            second = distance;
-        }
-      });
-    }
-    const double limit = second + slack;
-    std::erase_if(hits, [&](const Hit& hit) { return hit.distance > limit; });
+  /// Calls visit(seed, position) for the seeds in all cells that a box touches.
+  template <typename Visit>
+  void visit_box(const Box& box, const Visit& visit) const {
+    const auto lo = cell_at(box.lo), hi = cell_at(box.hi);
+    for (int k = lo[2]; k <= hi[2]; ++k)
+      for (int j = lo[1]; j <= hi[1]; ++j) {
+        const std::size_t row = index(0, j, k);
+        for (std::uint32_t at = start_[row + lo[0]]; at < start_[row + hi[0] + 1]; ++at) visit(order_[at], position_[at]);
+      }
   }
+  double cell() const { return cell_; }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-
   std::array<int, 3> cell_at(const Vec3& p) const {
     std::array<int, 3> c{};
     for (int a = 0; a < 3; ++a) c[a] = std::clamp(static_cast<int>((p[a] - origin_[a]) / cell_), 0, size_[a] - 1);
     return c;
   }
   std::size_t index(int i, int j, int k) const { return (std::size_t(k) * size_[1] + j) * size_[0] + i; }
-
-  /// Calls visit(cell) for the cells at Chebyshev distance `ring` from c.
-  template <typename Visit>
-  void visit_ring(const std::array<int, 3>& c, int ring, const Visit& visit) const {
-    for (int k = std::max(0, c[2] - ring); k <= std::min(size_[2] - 1, c[2] + ring); ++k)
-      for (int j = std::max(0, c[1] - ring); j <= std::min(size_[1] - 1, c[1] + ring); ++j) {
-        const bool face = std::abs(k - c[2]) == ring || std::abs(j - c[1]) == ring;
-        const int step = face || ring == 0 ? 1 : 2 * ring;
-        for (int i = c[0] - ring; i <= c[0] + ring; i += step)
-          if (i >= 0 && i < size_[0]) visit(index(i, j, k));
-      }
-  }
 
   Vec3 origin_;
   double cell_ = 1;
@@ -101,32 +62,69 @@ class SeedGrid {
   std::vector<Vec3> position_;
 };
 
-/// Leaves out the hits that cannot be among the two nearest seeds of any point of the box: those for which two other
-/// seeds are nearer everywhere in it. |x − s|² − |x − t|² is linear in x, so its minimum over the box is at a corner.
-void keep_near(const BlockBox& box, double margin, std::vector<SeedGrid::Hit>& hits, std::vector<SeedGrid::Hit>& nearest) {
-  constexpr std::size_t judges = 5;
-  if (hits.size() <= 2) return;
-  nearest.assign(hits.begin(), hits.end());
-  const std::size_t count = std::min(judges, nearest.size());
-  std::partial_sort(nearest.begin(), nearest.begin() + count, nearest.end(),
-                    [](const auto& a, const auto& b) { return a.distance != b.distance ? a.distance < b.distance : a.seed < b.seed; });
-  const double radius = norm({box.half[0], box.half[1], box.half[2]});
-  std::erase_if(hits, [&](const SeedGrid::Hit& hit) {
-    int dominating = 0;
-    for (std::size_t n = 0; n < count; ++n) {
-      const SeedGrid::Hit& judge = nearest[n];
-      if (judge.seed == hit.seed) continue;
-      const double at_center = hit.distance * hit.distance - judge.distance * judge.distance;
-      double swing = 0;
-      for (int a = 0; a < 3; ++a) swing += std::abs(hit.offset[a] - judge.offset[a]) * box.half[a];
-      // Seeds may each come or go by `margin`; differences of distances change by at most twice that.
-      const double reach = hit.distance + judge.distance + 2 * radius;
-      if (at_center - 2 * swing > 2 * margin * reach + 1e-6 * reach * reach) ++dominating;
-      if (dominating == 2) return true;
+/// The seeds around a chunk of blocks, and those of them that matter to one block.
+class ChunkSeeds {
+ public:
+  ChunkSeeds(const SeedGrid& grid, std::span<const Vec3> seeds, double margin) : grid_(grid), seeds_(seeds), margin_(margin) {}
+
+  /// Collects the seeds within `reach` of a box.
+  void collect(Box box, double reach) {
+    reach_ = reach;
+    for (int a = 0; a < 3; ++a) box.lo[a] -= reach, box.hi[a] += reach;
+    near_.clear();
+    grid_.visit_box(box, [&](std::uint32_t seed, const Vec3& position) {
+      if (box.contains(position)) near_.push_back(seed);
+    });
+    std::sort(near_.begin(), near_.end());
+    origin_ = box.center();
+    near_x_.clear(), near_y_.clear(), near_z_.clear();
+    for (const std::uint32_t seed : near_) {
+      const Vec3 p = seeds_[seed] - origin_;
+      near_x_.push_back(static_cast<float>(p.x)), near_y_.push_back(static_cast<float>(p.y)), near_z_.push_back(static_cast<float>(p.z));
     }
-    return false;
-  });
-}
+    distance_.resize(near_.size());
+  }
+
+  /// Candidates of a block, ascending. False: they may lie beyond the reach; collect with needed() and ask again.
+  bool candidates(const Vec3& block_center, const BlockBox& box, std::vector<std::uint32_t>& list) {
+    const Vec3 center = block_center + Vec3{box.center[0], box.center[1], box.center[2]};
+    const Vec3 from = center - origin_;
+    const auto cx = static_cast<float>(from.x), cy = static_cast<float>(from.y), cz = static_cast<float>(from.z);
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      const float dx = near_x_[i] - cx, dy = near_y_[i] - cy, dz = near_z_[i] - cz;
+      distance_[i] = dx * dx + dy * dy + dz * dz;
+    }
+    float best = std::numeric_limits<float>::infinity(), second = best;
+    for (const float d : distance_) second = std::min(second, std::max(best, d)), best = std::min(best, d);
+    // With fewer than two seeds in reach there is no bound yet, unless there is only one seed at all.
+    if (near_.size() < std::min<std::size_t>(2, seeds_.size())) return needed_ = 2 * reach_ + grid_.cell(), false;
+    const double radius = norm({box.half[0], box.half[1], box.half[2]});
+    const double limit = std::sqrt(near_.size() < 2 ? best : second) * (1 + 1e-4) + 2 * radius + 4 * margin_;
+    if (limit > reach_ && near_.size() < seeds_.size()) return needed_ = limit, false;
+    const auto limit2 = static_cast<float>(limit * limit);
+    x_.clear(), y_.clear(), z_.clear(), seed_.clear();
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      if (distance_[i] > limit2) continue;
+      const Vec3 offset = seeds_[near_[i]] - block_center;
+      x_.push_back(static_cast<float>(offset.x)), y_.push_back(static_cast<float>(offset.y)), z_.push_back(static_cast<float>(offset.z));
+      seed_.push_back(near_[i]);
+    }
+    const std::size_t count = seed_.size(), capacity = (count + 7) / 8 * 8;
+    x_.resize(capacity), y_.resize(capacity), z_.resize(capacity);
+    const std::size_t kept = keep_near_seeds(box, static_cast<float>(margin_), x_.data(), y_.data(), z_.data(), seed_.data(), count);
+    list.insert(list.end(), seed_.begin(), seed_.begin() + static_cast<std::ptrdiff_t>(kept));
+    return true;
+  }
+  double needed() const { return needed_; }
+
+ private:
+  const SeedGrid& grid_;
+  std::span<const Vec3> seeds_;
+  double margin_, reach_ = 0, needed_ = 0;
+  std::vector<std::uint32_t> near_, seed_;
+  Vec3 origin_;
+  std::vector<float> near_x_, near_y_, near_z_, distance_, x_, y_, z_;
+};
 
 }  // namespace
 
@@ -153,7 +151,7 @@ CandidateLists::CandidateLists(const SampleSet& samples, const Run& run)
       counts_(samples.blocks.size()) {}
 
 void CandidateLists::update(std::span<const Vec3> seeds, double margin, const Run& run) {
-  if (margin_ >= 0 && seeds_at_build_.size() == seeds.size()) {
+  if (seeds_at_build_.size() == seeds.size()) {
     double largest_move = 0;
     for (std::size_t i = 0; i < seeds.size(); ++i)
       largest_move = std::max(largest_move, squared_norm(seeds[i] - seeds_at_build_[i]));
@@ -162,23 +160,27 @@ void CandidateLists::update(std::span<const Vec3> seeds, double margin, const Ru
   seeds_at_build_.assign(seeds.begin(), seeds.end());
   margin_ = margin;
   const SeedGrid grid(seeds, samples_.total_area);
+  const double spacing = std::sqrt(samples_.total_area / static_cast<double>(seeds.size()));
   parallel_tasks(run, lists_.size(), [&](std::size_t c) {
-    std::vector<SeedGrid::Hit> hits, nearest;
-    lists_[c].clear();
-    for (std::size_t b = c * chunk; b < std::min((c + 1) * chunk, boxes_.size()); ++b) {
+    const std::size_t first = c * chunk, last = std::min((c + 1) * chunk, boxes_.size());
+    ChunkSeeds near(grid, seeds, margin);
+    Box all;
+    double radius = 0;
+    for (std::size_t b = first; b < last; ++b) {
       const BlockBox& box = boxes_[b];
-      const Vec3 center =
-          samples_.block_center(samples_.blocks[b]) + Vec3{box.center[0], box.center[1], box.center[2]};
-      const double radius = norm({box.half[0], box.half[1], box.half[2]});
-      grid.gather(center, 2 * radius + 4 * margin, hits);
-      keep_near(box, margin, hits, nearest);
-      std::sort(hits.begin(), hits.end(), [](const auto& a, const auto& b2) { return a.seed < b2.seed; });
-      offsets_[b] = static_cast<std::uint32_t>(lists_[c].size());
-      counts_[b] = static_cast<std::uint32_t>(hits.size());
-      for (const auto& hit : hits) lists_[c].push_back(hit.seed);
+      const Vec3 half{box.half[0], box.half[1], box.half[2]};
+      all.add(samples_.block_center(samples_.blocks[b]) + Vec3{box.center[0], box.center[1], box.center[2]});
+      radius = std::max(radius, norm(half));
+    }
+    near.collect(all, 1.2 * spacing + 2 * radius + 4 * margin);
+    lists_[c].clear();
+    for (std::size_t b = first; b < last; ++b) {
+      const std::size_t before = lists_[c].size();
+      while (!near.candidates(samples_.block_center(samples_.blocks[b]), boxes_[b], lists_[c])) near.collect(all, near.needed());
+      offsets_[b] = static_cast<std::uint32_t>(before);
+      counts_[b] = static_cast<std::uint32_t>(lists_[c].size() - before);
     }
   });
-  largest_ = *std::max_element(counts_.begin(), counts_.end());
 }
 
 }  // namespace evenmesh

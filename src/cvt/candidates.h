@@ -6,14 +6,11 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "cvt/cell_kernels.h"
 #include "sample/sample_set.h"
 
 namespace evenmesh {
 
-/// Box of a block's samples relative to its centre.
-struct BlockBox {
-  float center[3], half[3];
-};
 std::vector<BlockBox> block_boxes(const SampleSet& samples, const Run& run);
 
 /// Candidate lists, kept while seeds move little.
@@ -31,17 +28,16 @@ class CandidateLists {
   std::span<const std::uint32_t> of_block(std::size_t b) const {
     return {lists_[b / chunk].data() + offsets_[b], counts_[b]};
   }
-  std::size_t largest() const { return largest_; }
+  const BlockBox& box(std::size_t b) const { return boxes_[b]; }
 
  private:
-  static constexpr std::size_t chunk = 64;  ///< blocks per list storage, the unit of parallel work
+  static constexpr std::size_t chunk = 32;  ///< blocks, neighbours mostly, that are searched together
   const SampleSet& samples_;
   std::vector<BlockBox> boxes_;
   std::vector<std::vector<std::uint32_t>> lists_;
   std::vector<std::uint32_t> offsets_, counts_;
   std::vector<Vec3> seeds_at_build_;
-  double margin_ = -1;
-  std::size_t largest_ = 0;
+  double margin_ = 0;
 };
 
 }  // namespace evenmesh

@@ -11,6 +11,8 @@ namespace evenmesh {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+constexpr std::size_t max_candidates = 256;
+
 using D = hn::CappedTag<float, 8>;
 using V = hn::Vec<D>;
 
@@ -51,12 +53,27 @@ HWY_INLINE V load(D d, const float* from, std::size_t i, std::size_t end) {
   return end - i >= hn::Lanes(d) ? hn::LoadU(d, from + i) : hn::MaskedLoad(hn::FirstN(d, end - i), d, from + i);
 }
 
+/// Values of a small table by lane: one permutation when the table fits a vector.
+class Table {
+ public:
+  Table(D d, const float* values, std::size_t count) : values_(values), small_(count <= hn::Lanes(d)), lanes_(hn::LoadU(d, values)) {}
+  template <typename Index>
+  HWY_INLINE V at(D d, Index index) const {
+    return small_ ? hn::TableLookupLanes(lanes_, hn::IndicesFromVec(d, index)) : hn::GatherIndex(d, values_, index);
+  }
+
+ private:
+  const float* values_;
+  bool small_;
+  V lanes_;
+};
+
 double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const BlockSums& sums) {
   const D d;
   const hn::RebindToSigned<D> di;
   const std::size_t lanes = hn::Lanes(d);
   float* const* t = scratch.array;
-  const float* const seed[3] = {b.seed_x, b.seed_y, b.seed_z};
+  const Table seed[3] = {{d, b.seed_x, b.seeds}, {d, b.seed_y, b.seeds}, {d, b.seed_z, b.seeds}};
   V energy = hn::Zero(d);
   // First pass: the two nearest seeds of each sample, and what each of them gets of its footprint. The profile of a
   // footprint across the bisector is 3/(4R)·(1 − t²/R²), the projection of an isotropic density: F and its gradient agree.
@@ -67,7 +84,7 @@ double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const Bloc
     const auto first = hn::ConvertTo(di, n.first), second = hn::ConvertTo(di, n.second);
     V apart[3], length2 = hn::Set(d, 1e-30f);
     for (int a = 0; a < 3; ++a) {
-      apart[a] = hn::Sub(hn::GatherIndex(d, seed[a], second), hn::GatherIndex(d, seed[a], first));
+      apart[a] = hn::Sub(seed[a].at(d, second), seed[a].at(d, first));
       length2 = hn::Add(length2, hn::Mul(apart[a], apart[a]));
     }
     // q = R / |s2 − s1|, u = (distance to the bisector) / R
@@ -111,6 +128,54 @@ double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const Bloc
     sums.mz[c] = sum_lanes(d, mz) - m * b.seed_z[c];
   }
   return sum_lanes(d, energy);
+}
+
+std::size_t KeepNearSeeds(const BlockBox& box, float margin, float* x, float* y, float* z, std::uint32_t* seed, std::size_t count) {
+  constexpr std::size_t judges = 4;
+  if (count <= 2) return count;
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  HWY_ALIGN float distance2[max_candidates], dominated[max_candidates];
+  const V cx = hn::Set(d, box.center[0]), cy = hn::Set(d, box.center[1]), cz = hn::Set(d, box.center[2]);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const V dx = hn::Sub(hn::LoadU(d, x + i), cx), dy = hn::Sub(hn::LoadU(d, y + i), cy), dz = hn::Sub(hn::LoadU(d, z + i), cz);
+    hn::Store(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), d, distance2 + i);
+    hn::Store(hn::Zero(d), d, dominated + i);
+  }
+  // The nearest few to the centre, in order; they judge the others.
+  std::size_t judge[judges + 1], judge_count = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (judge_count == judges && distance2[i] >= distance2[judge[judges - 1]]) continue;
+    std::size_t at = judge_count;
+    for (; at > 0 && distance2[i] < distance2[judge[at - 1]]; --at) judge[at] = judge[at - 1];
+    judge[at] = i;
+    judge_count = judge_count < judges ? judge_count + 1 : judges;
+  }
+  // Moves change each distance by up to the margin, so the difference of their squares by 2 · margin · (their sum).
+  const float *half = box.half, diameter = 2 * __builtin_sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
+  const V hx = hn::Set(d, 2 * half[0]), hy = hn::Set(d, 2 * half[1]), hz = hn::Set(d, 2 * half[2]);
+  const V give = hn::Set(d, 2 * margin);
+  for (std::size_t j = 0; j < judge_count; ++j) {
+    const std::size_t q = judge[j];
+    const V jx = hn::Set(d, x[q]), jy = hn::Set(d, y[q]), jz = hn::Set(d, z[q]), jd = hn::Set(d, distance2[q]);
+    const V reach = hn::Add(hn::Sqrt(jd), hn::Set(d, diameter));
+    for (std::size_t i = 0; i < count; i += lanes) {
+      const V swing = hn::Add(hn::Add(hn::Mul(hn::AbsDiff(hn::LoadU(d, x + i), jx), hx), hn::Mul(hn::AbsDiff(hn::LoadU(d, y + i), jy), hy)),
+                              hn::Mul(hn::AbsDiff(hn::LoadU(d, z + i), jz), hz));
+      const V own = hn::Load(d, distance2 + i);
+      V slack = hn::Mul(hn::Add(own, jd), hn::Set(d, 1e-5f));
+      if (margin > 0) slack = hn::Add(slack, hn::Mul(give, hn::Add(hn::Sqrt(own), reach)));
+      const V farther = hn::Sub(hn::Sub(own, jd), hn::Add(swing, slack));
+      const V one = hn::IfThenElseZero(hn::Gt(farther, hn::Zero(d)), hn::Set(d, 1.0f));
+      hn::Store(hn::Add(hn::Load(d, dominated + i), one), d, dominated + i);
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    x[kept] = x[i], y[kept] = y[i], z[kept] = z[i], seed[kept] = seed[i];
+    kept += dominated[i] < 2 ? 1 : 0;
+  }
+  return kept;
 }
 
 void NearestInBlock(const BlockView& b, std::uint32_t* nearest) {
@@ -160,11 +225,16 @@ HWY_AFTER_NAMESPACE();
 namespace evenmesh {
 
 HWY_EXPORT(EvaluateBlock);
+HWY_EXPORT(KeepNearSeeds);
 HWY_EXPORT(NearestInBlock);
 HWY_EXPORT(NearestPairInBlock);
 
 double evaluate_block(const BlockView& block, const BlockScratch& scratch, const BlockSums& sums) {
   return HWY_DYNAMIC_DISPATCH(EvaluateBlock)(block, scratch, sums);
+}
+std::size_t keep_near_seeds(const BlockBox& box, float margin, float* x, float* y, float* z, std::uint32_t* seed, std::size_t count) {
+  if (count > 256) return count;  // a crowd of seeds in one place: all of them are tried
+  return HWY_DYNAMIC_DISPATCH(KeepNearSeeds)(box, margin, x, y, z, seed, count);
 }
 void nearest_in_block(const BlockView& block, std::uint32_t* nearest) {
   HWY_DYNAMIC_DISPATCH(NearestInBlock)(block, nearest);

@@ -12,7 +12,7 @@ struct BlockView {
   float footprint;                     ///< a sample of area w has a footprint of radius footprint / √max(w, least_area)
   float least_area;
   std::size_t samples;
-  const float *seed_x, *seed_y, *seed_z;
+  const float *seed_x, *seed_y, *seed_z;  ///< readable up to a multiple of eight
   std::size_t seeds;
 };
 
@@ -21,6 +21,16 @@ struct BlockScratch {
   static constexpr int arrays = 10;
   float* array[arrays];
 };
+
+/// Box of a block's samples relative to its centre.
+struct BlockBox {
+  float center[3], half[3];
+};
+
+/// Leaves out the seeds that cannot be among the two nearest of any point of the box, even when every seed moves by `margin`:
+/// those for which two others are nearer everywhere in it. Coordinates relative to the block's centre, arrays of a capacity
+/// rounded up to eight; keeps the order. Returns how many are left.
+std::size_t keep_near_seeds(const BlockBox& box, float margin, float* x, float* y, float* z, std::uint32_t* seed, std::size_t count);
 
 /// Per candidate seed: Σ w, Σ w·(x − s).
 struct BlockSums {

@@ -19,12 +19,15 @@ constexpr double footprint_radius = 0.7;
 /// Rays that graze the surface have long footprints and little weight; the radius does not grow below this |n_a|.
 constexpr double least_slope = 0.25;
 
+/// How far seeds may move before the candidates are searched anew, in seed spacings.
+constexpr double candidate_margin = 0.35;
+
 /// Seeds of one block in single precision, and its sums.
 struct Workspace {
   std::vector<float> seeds, sums;
   hwy::AlignedFreeUniquePtr<float[]> scratch_memory;
   BlockScratch scratch{};
-  std::vector<std::uint32_t> first, second;
+  std::vector<std::uint32_t> candidates, first, second;
   std::vector<float> distance;
 
   Workspace(std::size_t largest_block) {
@@ -48,7 +51,6 @@ struct CellEvaluator::State {
   CandidateLists lists;
   float footprint, least_area;
   std::size_t largest_block = 0;
-  std::vector<Vec3> last_seeds;
   std::vector<double> block_energy;
   tbb::enumerable_thread_specific<FixedSums> fixed;
   tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces;
@@ -59,17 +61,10 @@ struct CellEvaluator::State {
     block_energy.resize(s.blocks.size());
   }
 
-  /// Seeds that move little since the last call get lists with a margin, so that the next calls need no new ones.
+  /// The margin costs a few more candidates to sort out per block; without it every evaluation would search anew.
   void update_lists(std::span<const Vec3> seeds) {
     const double spacing = std::sqrt(samples.total_area / static_cast<double>(seeds.size()));
-    double margin = 0;
-    if (last_seeds.size() == seeds.size()) {
-      double move = 0;
-      for (std::size_t i = 0; i < seeds.size(); ++i) move = std::max(move, squared_norm(seeds[i] - last_seeds[i]));
-      margin = std::min(4 * std::sqrt(move), 0.15 * spacing);
-    }
-    last_seeds.assign(seeds.begin(), seeds.end());
-    lists.update(seeds, margin, run);
+    lists.update(seeds, candidate_margin * spacing, run);
   }
 
   /// Calls work(block index, view, candidates, workspace) for every block, in parallel.
@@ -80,15 +75,18 @@ struct CellEvaluator::State {
       if (!workspace) workspace = std::make_unique<Workspace>(largest_block);
       for (std::size_t b = begin; b < end; ++b) {
         const SampleBlock& block = samples.blocks[b];
-        const auto candidates = lists.of_block(b);
+        const auto listed = lists.of_block(b);
         const Vec3 center = samples.block_center(block);
-        const std::size_t n = candidates.size();
-        workspace->seeds.resize(3 * n);
-        float* s = workspace->seeds.data();
-        for (std::size_t c = 0; c < n; ++c) {
-          const Vec3 offset = seeds[candidates[c]] - center;
-          s[c] = static_cast<float>(offset.x), s[n + c] = static_cast<float>(offset.y), s[2 * n + c] = static_cast<float>(offset.z);
+        const std::size_t capacity = (listed.size() + 7) / 8 * 8;
+        workspace->seeds.resize(3 * capacity);
+        workspace->candidates.assign(listed.begin(), listed.end());
+        float *sx = workspace->seeds.data(), *sy = sx + capacity, *sz = sy + capacity;
+        for (std::size_t c = 0; c < listed.size(); ++c) {
+          const Vec3 offset = seeds[listed[c]] - center;
+          sx[c] = static_cast<float>(offset.x), sy[c] = static_cast<float>(offset.y), sz[c] = static_cast<float>(offset.z);
         }
+        const std::size_t n = keep_near_seeds(lists.box(b), 0, sx, sy, sz, workspace->candidates.data(), listed.size());
+        const std::span<const std::uint32_t> candidates(workspace->candidates.data(), n);
         const std::size_t at = block.begin;
         const BlockView view{.x = samples.x.data() + at,
                              .y = samples.y.data() + at,
@@ -97,9 +95,9 @@ struct CellEvaluator::State {
                              .footprint = footprint,
                              .least_area = least_area,
                              .samples = block.end - at,
-                             .seed_x = s,
-                             .seed_y = s + n,
-                             .seed_z = s + 2 * n,
+                             .seed_x = sx,
+                             .seed_y = sy,
+                             .seed_z = sz,
                              .seeds = n};
         work(b, view, candidates, *workspace);
       }

@@ -47,10 +47,12 @@ class Fitter {
   Fitter(Mesh& mesh, const CellSamples& cells, const Projector* projector) : mesh_(mesh), cells_(cells), projector_(projector), rings_(mesh) {}
 
   /// Largest squared distance of a cell's samples from the triangles around its vertex.
-  double deviation(std::uint32_t v) const {
-    double worst = 0;
-    for (const Vec3& p : cells_.of(v)) worst = std::max(worst, squared_distance(p, rings_.triangles(v)));
-    return worst;
+  double deviation(std::uint32_t v) const { return deviation_[v]; }
+  void measure_deviations(const Run& run) {
+    deviation_.resize(mesh_.vertices.size());
+    parallel_for(run, deviation_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) deviation_[v] = measured_deviation(static_cast<std::uint32_t>(v));
+    });
   }
   double edge_length(std::uint32_t v) const { return rings_.edge_length(v); }
 
@@ -100,9 +102,9 @@ class Fitter {
     std::array<double, 3> floor;
     for (int c = 0; c < 3; ++c) normals[c] = rings_.normals(corners[c]), floor[c] = std::min(least_score, rings_.worst_score(corners[c], normals[c]));
     for (const std::uint32_t c : corners) mesh_.vertices[c] += step;
-    bool good = worst_deviation(region) < 0.9 * before;
+    bool good = true;
     for (int c = 0; c < 3; ++c) good = good && rings_.worst_score(corners[c], normals[c]) >= floor[c];
-    if (good) return true;
+    if (good && all_within(region, 0.9 * before)) return true;
     for (int c = 0; c < 3; ++c) mesh_.vertices[corners[c]] = original[c];
     return false;
   }
@@ -116,6 +118,11 @@ class Fitter {
   }
 
  private:
+  double measured_deviation(std::uint32_t v) const {
+    double worst = 0;
+    for (const Vec3& p : cells_.of(v)) worst = std::max(worst, squared_distance(p, rings_.triangles(v)));
+    return worst;
+  }
   double squared_distance(const Vec3& p, std::span<const std::uint32_t> triangles) const {
     double nearest = std::numeric_limits<double>::infinity();
     for (const std::uint32_t t : triangles) {
@@ -149,8 +156,23 @@ class Fitter {
   }
   double worst_deviation(std::span<const std::uint32_t> cells) const {
     double worst = 0;
-    for (const std::uint32_t w : cells) worst = std::max(worst, deviation(w));
+    for (const std::uint32_t w : cells) worst = std::max(worst, deviation_[w]);
     return worst;
+  }
+  /// Whether all samples of these cells lie within a squared distance; then their deviations are brought up to date.
+  bool all_within(std::span<const std::uint32_t> cells, double limit) {
+    for (const std::uint32_t w : cells)
+      for (const Vec3& p : cells_.of(w)) {
+        bool near = false;
+        for (const std::uint32_t t : rings_.triangles(w)) {
+          const Triangle& c = mesh_.triangles[t];
+          near = squared_norm(p - closest_point_on_triangle(p, mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]])) < limit;
+          if (near) break;
+        }
+        if (!near) return false;
+      }
+    for (const std::uint32_t w : cells) deviation_[w] = measured_deviation(w);
+    return true;
   }
 
   /// Puts the vertex there, lets the two rings around it give way, and keeps that if triangles stay good and the mesh comes nearer.
@@ -169,12 +191,12 @@ class Fitter {
     for (int round = 0; round < 6; ++round)
       for (const std::uint32_t w : region)
         if (w != mover) give_way(w);
-    bool good = worst_deviation(region) < 0.8 * before;  // squared
+    bool good = true;
     for (std::size_t i = 0; i < triangles.size() && good; ++i) {
       const Triangle& t = mesh_.triangles[triangles[i]];
       good = rings_.score(t) >= floor && dot(rings_.normal_of(t), normals[i]) > 0;
     }
-    if (good) return true;
+    if (good && all_within(region, 0.8 * before)) return true;
     for (std::size_t i = 0; i < region.size(); ++i) mesh_.vertices[region[i]] = positions[i];
     return false;
   }
@@ -204,6 +226,7 @@ class Fitter {
   const CellSamples& cells_;
   const Projector* projector_;
   VertexRings rings_;
+  std::vector<double> deviation_;  ///< squared, by vertex
 };
 
 }  // namespace
@@ -215,16 +238,15 @@ std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const s
   Fitter fitter(mesh, cells, projector);
   std::size_t moves = 0;
   for (int round = 0; round < reaching_rounds + lifting_rounds; ++round) {
-    std::vector<double> deviation(count);
-    parallel_for(run, count, 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) deviation[v] = fitter.deviation(static_cast<std::uint32_t>(v));
-    });
+    fitter.measure_deviations(run);
     std::vector<std::uint32_t> order;
     for (std::uint32_t v = 0; v < count; ++v) {
       const double limit = worth_fitting * fitter.edge_length(v);
-      if (deviation[v] > limit * limit) order.push_back(v);
+      if (fitter.deviation(v) > limit * limit) order.push_back(v);
     }
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return deviation[a] != deviation[b] ? deviation[a] > deviation[b] : a < b; });
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) {
+      return fitter.deviation(a) != fitter.deviation(b) ? fitter.deviation(a) > fitter.deviation(b) : a < b;
+    });
     order.resize(std::min(order.size(), std::max<std::size_t>(50, count / 100)));
     const std::size_t before = moves;
     for (const std::uint32_t v : order) {
