@@ -189,6 +189,7 @@ void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_
       if (seeds.size() + added.size() < count) added.push_back(p);
   }
   seeds.insert(seeds.end(), added.begin(), added.end());
+  if (seeds.size() == count) return;
   // Cells without samples, or with fewer than were wanted of them: the rest goes anywhere.
   const std::vector<Vec3> rest = random_start(samples, count - seeds.size(), seed + 1);
   seeds.insert(seeds.end(), rest.begin(), rest.end());

@@ -23,8 +23,8 @@ std::vector<Vec3> split_seeds(CellEvaluator& evaluator, const std::vector<Vec3>&
 /// Number of pairs of neighbouring cells: what split_seeds() would add.
 std::size_t count_neighbour_pairs(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run);
 
-/// Adds seeds in the heaviest cells, or removes those of the lightest, until there are `count`; no two changes touch
-/// neighbouring places unless there is no other way.
+/// Adds seeds at random samples of the heaviest cells, or removes the seeds of the lightest, until there are exactly `count`.
+/// Seeds that stay keep their order; balance them afterwards.
 void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run);
 
 }  // namespace evenmesh
