@@ -48,7 +48,9 @@ class Balance {
     for (std::size_t level = levels_;; --level) {
       const bool finest = level == 0, coarsest = level == levels_;
       CellEvaluator& evaluator = finest ? pyramid_.finest() : pyramid_.for_seeds(seeds_.size());
-      double energy = relax(evaluator, seeds_, finest ? options_.evaluations : options_.coarse_evaluations);
+      double energy = relax(evaluator, seeds_, finest     ? options_.evaluations
+                                               : coarsest ? options_.coarsest_evaluations
+                                                          : options_.coarse_evaluations);
       if (coarsest && options_.annealing_rounds > 0) anneal(evaluator, energy);
       if (finest) break;
       split(count_at(level - 1));
@@ -94,19 +96,19 @@ class Balance {
       const double amplitude = 0.25 * spacing * (1 - round / rounds);
       std::vector<Vec3> shaken = seeds_;
       for (Vec3& s : shaken) s += amplitude * Vec3{random.gaussian(), random.gaussian(), random.gaussian()};
-      const double energy = relax(evaluator, shaken, options_.coarse_evaluations);
+      const double energy = relax(evaluator, shaken, options_.coarsest_evaluations);
       if (energy < best) best = energy, seeds_.swap(shaken);
     }
   }
 
-  /// Goes to the next finer level. The number of neighbour pairs depends on the shape's genus, so the coarse seeds are first
-  /// made as many as will give `target`; the few that differ in the end are added or removed on the finer level.
+  /// Goes to the next finer level. The number of neighbour pairs depends on the shape's genus: where it matters, the coarse
+  /// seeds are first made as many as will give `target`; the few that differ are added or removed on the finer level.
   void split(std::size_t target) {
     CellEvaluator& evaluator = pyramid_.for_seeds(target);  // four times as many samples as balancing needs: sees short borders
     const auto now = static_cast<std::int64_t>(seeds_.size());
     const auto after = now + static_cast<std::int64_t>(count_neighbour_pairs(evaluator, seeds_, run_));
     const std::int64_t change = (static_cast<std::int64_t>(target) - after) / 4;
-    if (change != 0) {
+    if (std::abs(change) * 100 > now) {
       adjust_count(evaluator, seeds_, static_cast<std::size_t>(std::max<std::int64_t>(4, now + change)), options_.seed + 2, run_);
       relax(pyramid_.for_seeds(seeds_.size()), seeds_, options_.coarse_evaluations / 3);
     }

@@ -11,7 +11,8 @@ struct BalanceOptions {
   SeedStart start = SeedStart::coarse_to_fine;
   bool lloyd = false;
   std::size_t evaluations = 20;         ///< of the energy on the finest level, at most
-  std::size_t coarse_evaluations = 40;  ///< on every coarser level
+  std::size_t coarsest_evaluations = 40;  ///< on the coarsest level
+  std::size_t coarse_evaluations = 24;  ///< on the levels between
   std::size_t annealing_rounds = 0;     ///< on the coarsest level
   double tolerance = 1e-4;              ///< see OptimizeOptions
   std::uint64_t seed = 1;

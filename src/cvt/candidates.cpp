@@ -75,7 +75,6 @@ class ChunkSeeds {
     grid_.visit_box(box, [&](std::uint32_t seed, const Vec3& position) {
       if (box.contains(position)) near_.push_back(seed);
     });
-    std::sort(near_.begin(), near_.end());
     origin_ = box.center();
     near_x_.clear(), near_y_.clear(), near_z_.clear();
     for (const std::uint32_t seed : near_) {
@@ -112,6 +111,7 @@ class ChunkSeeds {
     const std::size_t count = seed_.size(), capacity = (count + 7) / 8 * 8;
     x_.resize(capacity), y_.resize(capacity), z_.resize(capacity);
     const std::size_t kept = keep_near_seeds(box, static_cast<float>(margin_), x_.data(), y_.data(), z_.data(), seed_.data(), count);
+    std::sort(seed_.begin(), seed_.begin() + static_cast<std::ptrdiff_t>(kept));  // ties go to the lower index
     list.insert(list.end(), seed_.begin(), seed_.begin() + static_cast<std::ptrdiff_t>(kept));
     return true;
   }

@@ -26,16 +26,16 @@ BalanceOptions balance_options(const MeshOptions& options) {
   const bool one_level = options.start != Start::coarse_to_fine;
   switch (options.quality) {
     case Quality::fast:
-      balance.evaluations = one_level ? 40 : 8, balance.coarse_evaluations = 20;
+      balance.evaluations = one_level ? 40 : 8, balance.coarse_evaluations = 16, balance.coarsest_evaluations = 30;
       break;
     case Quality::normal:
-      balance.evaluations = one_level ? 100 : 16, balance.coarse_evaluations = 40;
+      balance.evaluations = one_level ? 100 : 16;
       break;
     case Quality::high:
-      balance.evaluations = one_level ? 300 : 80, balance.coarse_evaluations = 100, balance.annealing_rounds = 12;
+      balance.evaluations = one_level ? 300 : 80, balance.coarse_evaluations = 100, balance.coarsest_evaluations = 100, balance.annealing_rounds = 12;
       break;
   }
-  if (options.iterations) balance.evaluations = balance.coarse_evaluations = *options.iterations;
+  if (options.iterations) balance.evaluations = balance.coarse_evaluations = balance.coarsest_evaluations = *options.iterations;
   return balance;
 }
 
