@@ -76,29 +76,24 @@ class ChunkSeeds {
       if (box.contains(position)) near_.push_back(seed);
     });
     origin_ = box.center();
-    near_x_.clear(), near_y_.clear(), near_z_.clear();
-    for (const std::uint32_t seed : near_) {
-      const Vec3 p = seeds_[seed] - origin_;
-      near_x_.push_back(static_cast<float>(p.x)), near_y_.push_back(static_cast<float>(p.y)), near_z_.push_back(static_cast<float>(p.z));
+    const std::size_t capacity = (near_.size() + 7) / 8 * 8;
+    for (auto* array : {&near_x_, &near_y_, &near_z_, &distance_}) array->resize(capacity);
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      const Vec3 p = seeds_[near_[i]] - origin_;
+      near_x_[i] = static_cast<float>(p.x), near_y_[i] = static_cast<float>(p.y), near_z_[i] = static_cast<float>(p.z);
     }
-    distance_.resize(near_.size());
   }
 
   /// Candidates of a block, ascending. False: they may lie beyond the reach; collect with needed() and ask again.
   bool candidates(const Vec3& block_center, const BlockBox& box, std::vector<std::uint32_t>& list) {
     const Vec3 center = block_center + Vec3{box.center[0], box.center[1], box.center[2]};
     const Vec3 from = center - origin_;
-    const auto cx = static_cast<float>(from.x), cy = static_cast<float>(from.y), cz = static_cast<float>(from.z);
-    for (std::size_t i = 0; i < near_.size(); ++i) {
-      const float dx = near_x_[i] - cx, dy = near_y_[i] - cy, dz = near_z_[i] - cz;
-      distance_[i] = dx * dx + dy * dy + dz * dz;
-    }
-    float best = std::numeric_limits<float>::infinity(), second = best;
-    for (const float d : distance_) second = std::min(second, std::max(best, d)), best = std::min(best, d);
+    const float at[3] = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
+    const float second = distances_to(at, near_x_.data(), near_y_.data(), near_z_.data(), near_.size(), distance_.data());
     // With fewer than two seeds in reach there is no bound yet, unless there is only one seed at all.
     if (near_.size() < std::min<std::size_t>(2, seeds_.size())) return needed_ = 2 * reach_ + grid_.cell(), false;
     const double radius = norm({box.half[0], box.half[1], box.half[2]});
-    const double limit = std::sqrt(near_.size() < 2 ? best : second) * (1 + 1e-4) + 2 * radius + 4 * margin_;
+    const double limit = near_.size() < 2 ? reach_ : std::sqrt(second) * (1 + 1e-4) + 2 * radius + 4 * margin_;
     if (limit > reach_ && near_.size() < seeds_.size()) return needed_ = limit, false;
     const auto limit2 = static_cast<float>(limit * limit);
     x_.clear(), y_.clear(), z_.clear(), seed_.clear();

@@ -12,6 +12,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t max_candidates = 256;
+constexpr float far_away = 1e30f;
 
 using D = hn::CappedTag<float, 8>;
 using V = hn::Vec<D>;
@@ -23,7 +24,7 @@ struct Nearest2 {
 
 /// Two smallest of |s|² − 2 x·s over the candidates; strict comparisons keep the first on ties.
 HWY_INLINE Nearest2 nearest_two(D d, const BlockView& b, V x, V y, V z) {
-  const V far = hn::Set(d, 1e30f);
+  const V far = hn::Set(d, far_away);
   Nearest2 n{hn::Zero(d), hn::Zero(d), far, far};
   for (std::size_t c = 0; c < b.seeds; ++c) {
     const float sx = b.seed_x[c], sy = b.seed_y[c], sz = b.seed_z[c];
@@ -178,6 +179,30 @@ std::size_t KeepNearSeeds(const BlockBox& box, float margin, float* x, float* y,
   return kept;
 }
 
+float DistancesTo(const float* center, const float* x, const float* y, const float* z, std::size_t count, float* distance2) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  const V cx = hn::Set(d, center[0]), cy = hn::Set(d, center[1]), cz = hn::Set(d, center[2]), far = hn::Set(d, far_away);
+  V best = far, second = far;
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const V dx = hn::Sub(hn::LoadU(d, x + i), cx), dy = hn::Sub(hn::LoadU(d, y + i), cy), dz = hn::Sub(hn::LoadU(d, z + i), cz);
+    V d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
+    if (count - i < lanes) d2 = hn::IfThenElse(hn::FirstN(d, count - i), d2, far);
+    hn::StoreU(d2, d, distance2 + i);
+    second = hn::Min(second, hn::Max(best, d2));
+    best = hn::Min(best, d2);
+  }
+  HWY_ALIGN float lane[16];
+  hn::Store(best, d, lane);
+  hn::Store(second, d, lane + lanes);
+  float least = far_away, next = far_away;
+  for (std::size_t l = 0; l < 2 * lanes; ++l) {
+    next = lane[l] < least ? least : lane[l] < next ? lane[l] : next;
+    least = lane[l] < least ? lane[l] : least;
+  }
+  return next;
+}
+
 void NearestInBlock(const BlockView& b, std::uint32_t* nearest) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
@@ -225,6 +250,7 @@ HWY_AFTER_NAMESPACE();
 namespace evenmesh {
 
 HWY_EXPORT(EvaluateBlock);
+HWY_EXPORT(DistancesTo);
 HWY_EXPORT(KeepNearSeeds);
 HWY_EXPORT(NearestInBlock);
 HWY_EXPORT(NearestPairInBlock);
@@ -235,6 +261,9 @@ double evaluate_block(const BlockView& block, const BlockScratch& scratch, const
 std::size_t keep_near_seeds(const BlockBox& box, float margin, float* x, float* y, float* z, std::uint32_t* seed, std::size_t count) {
   if (count > 256) return count;  // a crowd of seeds in one place: all of them are tried
   return HWY_DYNAMIC_DISPATCH(KeepNearSeeds)(box, margin, x, y, z, seed, count);
+}
+float distances_to(const float center[3], const float* x, const float* y, const float* z, std::size_t count, float* distance2) {
+  return HWY_DYNAMIC_DISPATCH(DistancesTo)(center, x, y, z, count, distance2);
 }
 void nearest_in_block(const BlockView& block, std::uint32_t* nearest) {
   HWY_DYNAMIC_DISPATCH(NearestInBlock)(block, nearest);

@@ -32,6 +32,10 @@ struct BlockBox {
 /// rounded up to eight; keeps the order. Returns how many are left.
 std::size_t keep_near_seeds(const BlockBox& box, float margin, float* x, float* y, float* z, std::uint32_t* seed, std::size_t count);
 
+/// Squared distances of points from a centre; returns the second smallest (infinite with fewer than two points).
+/// Arrays readable, and `distance2` writable, up to a multiple of eight.
+float distances_to(const float center[3], const float* x, const float* y, const float* z, std::size_t count, float* distance2);
+
 /// Per candidate seed: Σ w, Σ w·(x − s).
 struct BlockSums {
   float *mass, *mx, *my, *mz;

@@ -48,13 +48,14 @@ class Fitter {
 
   /// Largest squared distance of a cell's samples from the triangles around its vertex.
   double deviation(std::uint32_t v) const { return deviation_[v]; }
+  /// Of the vertices whose surroundings changed since the last call; all of them at first.
   void measure_deviations(const Run& run) {
-    deviation_.resize(mesh_.vertices.size());
+    if (deviation_.empty()) deviation_.assign(mesh_.vertices.size(), 0), stale_.assign(mesh_.vertices.size(), 1);
     parallel_for(run, deviation_.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) deviation_[v] = measured_deviation(static_cast<std::uint32_t>(v));
+      for (std::size_t v = begin; v < end; ++v)
+        if (stale_[v]) deviation_[v] = measured_deviation(static_cast<std::uint32_t>(v)), stale_[v] = 0;
     });
   }
-  double edge_length(std::uint32_t v) const { return rings_.edge_length(v); }
 
   /// Pulls a vertex of the neighbourhood onto the sample of v's cell that is farthest from the mesh, or as far towards it as
   /// the triangles allow.
@@ -118,10 +119,21 @@ class Fitter {
   }
 
  private:
+  /// Zero when all samples are so near that nobody asks how near.
   double measured_deviation(std::uint32_t v) const {
+    const double edge = worth_fitting * rings_.edge_length(v);
     double worst = 0;
-    for (const Vec3& p : cells_.of(v)) worst = std::max(worst, squared_distance(p, rings_.triangles(v)));
+    for (const Vec3& p : cells_.of(v))
+      if (!is_within(p, rings_.triangles(v), edge * edge)) worst = std::max(worst, squared_distance(p, rings_.triangles(v)));
     return worst;
+  }
+  bool is_within(const Vec3& p, std::span<const std::uint32_t> triangles, double limit) const {
+    for (const std::uint32_t t : triangles) {
+      const Triangle& c = mesh_.triangles[t];
+      const Vec3 q = closest_point_on_triangle(p, mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]]);
+      if (squared_norm(p - q) < limit) return true;
+    }
+    return false;
   }
   double squared_distance(const Vec3& p, std::span<const std::uint32_t> triangles) const {
     double nearest = std::numeric_limits<double>::infinity();
@@ -162,16 +174,13 @@ class Fitter {
   /// Whether all samples of these cells lie within a squared distance; then their deviations are brought up to date.
   bool all_within(std::span<const std::uint32_t> cells, double limit) {
     for (const std::uint32_t w : cells)
-      for (const Vec3& p : cells_.of(w)) {
-        bool near = false;
-        for (const std::uint32_t t : rings_.triangles(w)) {
-          const Triangle& c = mesh_.triangles[t];
-          near = squared_norm(p - closest_point_on_triangle(p, mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]])) < limit;
-          if (near) break;
-        }
-        if (!near) return false;
-      }
-    for (const std::uint32_t w : cells) deviation_[w] = measured_deviation(w);
+      for (const Vec3& p : cells_.of(w))
+        if (!is_within(p, rings_.triangles(w), limit)) return false;
+    for (const std::uint32_t w : cells) {
+      deviation_[w] = measured_deviation(w);
+      for (const std::uint32_t t : rings_.triangles(w))
+        for (const std::uint32_t x : mesh_.triangles[t]) stale_[x] = 1;
+    }
     return true;
   }
 
@@ -227,6 +236,7 @@ class Fitter {
   const Projector* projector_;
   VertexRings rings_;
   std::vector<double> deviation_;  ///< squared, by vertex
+  std::vector<char> stale_;        ///< deviation_ may be wrong
 };
 
 }  // namespace
@@ -240,10 +250,8 @@ std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const s
   for (int round = 0; round < reaching_rounds + lifting_rounds; ++round) {
     fitter.measure_deviations(run);
     std::vector<std::uint32_t> order;
-    for (std::uint32_t v = 0; v < count; ++v) {
-      const double limit = worth_fitting * fitter.edge_length(v);
-      if (fitter.deviation(v) > limit * limit) order.push_back(v);
-    }
+    for (std::uint32_t v = 0; v < count; ++v)
+      if (fitter.deviation(v) > 0) order.push_back(v);
     std::sort(order.begin(), order.end(), [&](auto a, auto b) {
       return fitter.deviation(a) != fitter.deviation(b) ? fitter.deviation(a) > fitter.deviation(b) : a < b;
     });
