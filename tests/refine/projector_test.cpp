@@ -1,0 +1,93 @@
+#include "refine/projector.h"
+
+#include "evenmesh/error.h"
+#include "geometry/closest_point.h"
+#include "refine/refine_testing.h"
+#include "shape/field.h"
+
+namespace evenmesh {
+namespace {
+
+TEST(MeshProjector, FindsTheClosestPointWithinTheLimit) {
+  evenmesh::Run run(1);
+  const Mesh mesh = make_torus();
+  const Shape shape = shape_from_mesh(mesh);
+  const auto projector = make_projector(shape, shape.bounds, run);
+  const SurfaceQuery surface(mesh);
+  Random random(1);
+  for (int n = 0; n < 200; ++n) {
+    const double x = 3 * random.uniform() - 1.5, y = 3 * random.uniform() - 1.5, z = random.uniform() - 0.5;
+    const Vec3 p{x, y, z}, q = projector->project(p, 0.2);
+    if (surface.closest(p, 0.2).found())
+      EXPECT_LT(surface.closest(q).squared_distance, 1e-20);
+    else
+      EXPECT_EQ(q, p);
+  }
+}
+
+TEST(FieldProjector, LandsOnTheZeroSet) {
+  evenmesh::Run run(1);
+  for (const char* name : {"sphere", "torus", "tangle", "octic", "heart"}) {
+    const Shape shape = gallery_shape(name);
+    const auto projector = make_projector(shape, shape.bounds, run);
+    const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, 24), run);
+    const double h = samples.grid.spacing;
+    Random random(2);
+    std::size_t missed = 0;
+    for (const SampleBlock& block : samples.blocks)
+      for (std::size_t i = block.begin; i < block.end; ++i) {
+        const double x = random.uniform() - 0.5, y = random.uniform() - 0.5, z = random.uniform() - 0.5;
+        const Vec3 p =
+            samples.block_center(block) + Vec3{samples.x[i], samples.y[i], samples.z[i]} + 0.2 * h * Vec3{x, y, z};
+        const Vec3 q = projector->project(p, h);
+        ASSERT_LE(norm(q - p), h * (1 + 1e-9));
+        Vec3 gradient;
+        const double value = shape.field()->evaluate(q, &gradient);
+        missed += std::abs(value) > 1e-6 * h * norm(gradient) + 1e-12;
+      }
+    EXPECT_LE(missed, samples.size() / 100) << name;
+  }
+}
+
+TEST(FieldProjector, FindsTheSphereInDoublePrecision) {
+  evenmesh::Run run(1);
+  const Shape shape = gallery_shape("sphere");
+  const auto projector = make_projector(shape, shape.bounds, run);
+  Random random(3);
+  for (int n = 0; n < 200; ++n) {
+    const double x = random.gaussian(), y = random.gaussian(), z = random.gaussian(), r = 0.95 + 0.1 * random.uniform();
+    EXPECT_NEAR(norm(projector->project(r * normalized({x, y, z}), 0.1)), 1, 1e-12);
+  }
+  const Vec3 far{0.2, 0.1, 0};
+  EXPECT_EQ(projector->project(far, 0.1), far) << "no surface within the limit";
+}
+
+TEST(FieldProjector, CapsAreFacesOfTheBounds) {
+  evenmesh::Run run(1);
+  // A ball cut flat at x = 0.5.
+  const Box bounds{{-1.1, -1.1, -1.1}, {0.5, 1.1, 1.1}};
+  const Shape shape = shape_from_expression("r - 1", {}, bounds);
+  const auto projector = make_projector(shape, bounds, run);
+  for (const double y : {0.0, 0.3, -0.6})
+    for (const double x : {0.47, 0.5, 0.53}) EXPECT_NEAR(projector->project({x, y, 0.1}, 0.2).x, 0.5, 1e-12);
+  EXPECT_NEAR(norm(projector->project({-0.9, 0.1, 0.4}, 0.2)), 1, 1e-12);
+  // Around the rim: on the ball and not beyond the cap, or on the cap and not outside the ball.
+  Random random(4);
+  for (int n = 0; n < 200; ++n) {
+    const double angle = 6.283 * random.uniform(), dx = 0.06 * (random.uniform() - 0.5),
+                 dr = 0.06 * (random.uniform() - 0.5);
+    const double rim = std::sqrt(0.75) + dr;
+    const Vec3 q = projector->project({0.5 + dx, rim * std::cos(angle), rim * std::sin(angle)}, 0.2);
+    EXPECT_NEAR(std::max(norm(q) - 1, q.x - 0.5), 0, 1e-6);
+  }
+}
+
+TEST(Projector, IndicatorsHaveNone) {
+  evenmesh::Run run(1);
+  const Shape shape =
+      shape_from_indicator([](const Vec3& p) { return norm(p) < 1; }, {{-1.1, -1.1, -1.1}, {1.1, 1.1, 1.1}});
+  EXPECT_EQ(make_projector(shape, shape.bounds, run), nullptr);
+}
+
+}  // namespace
+}  // namespace evenmesh
