@@ -27,6 +27,7 @@ std::vector<CubeBrick> cube_bricks(const SampleSet& samples) {
       const int x = at[0] - (shift & 1), y = at[1] - (shift >> 1 & 1), z = at[2] - (shift >> 2);
       if (x < 0 || y < 0 || z < 0) continue;
       CubeBrick brick;
+      brick.at = {x, y, z};
       for (int d = 0; d < 8; ++d) brick.block[d] = find(x + (d & 1), y + (d >> 1 & 1), z + (d >> 2));
       if (shift == 0) {
         bricks.push_back(brick);

@@ -13,6 +13,7 @@ namespace evenmesh {
 /// A brick of grid cubes and the blocks that hold crossings on its cubes' edges: [dx + 2·dy + 4·dz], −1 = none.
 struct CubeBrick {
   std::array<std::int64_t, 8> block{};
+  std::array<int, 3> at{};  ///< brick coordinates
 };
 
 /// All bricks with a crossed cube, in a fixed order.
@@ -40,6 +41,21 @@ class CubeWalker {
             for (int e = cube.start[l]; e < cube.start[l + 1]; ++e) loop[length++] = sample_on(cube.edge[e], i, j, k);
             visit(static_cast<const std::uint32_t*>(loop), length);
           }
+        }
+      }
+    unload();
+  }
+
+  /// Calls visit(corners, i, j, k) for every crossed cube: bit c of `corners` is set where corner c is inside.
+  template <typename Visit>
+  void walk_cubes(const CubeBrick& brick, const Visit& visit) {
+    load(brick);
+    for (int k = 0; k < 8; ++k)
+      for (int j = 0; j < 8; ++j) {
+        const Row row = this->row(j, k);
+        for (unsigned active = row.active; active != 0; active &= active - 1) {
+          const int i = __builtin_ctz(active);
+          visit(inside_corners(row, i, j, k), i, j, k);
         }
       }
     unload();

@@ -36,7 +36,7 @@ DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& pol
       bool repeated = false;
       for (std::size_t i = 0; i < polygon.size(); ++i)
         for (std::size_t j = i + 1; j < polygon.size(); ++j)
-          if (polygon[i] == polygon[j]) repeated = true, mesh.defects.push_back(polygon[i]);
+          if (polygon[i] == polygon[j]) repeated = true, mesh.defects.push_back({polygon[i], polygon[i]});
       if (!repeated) cut_ears(polygon, positions, mesh.triangles);
     }
   const auto bad = manifold_defects(mesh.triangles, positions.size());
@@ -44,17 +44,17 @@ DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& pol
   return mesh;
 }
 
-std::vector<std::uint32_t> manifold_defects(std::span<const Triangle> triangles, std::size_t vertices) {
-  std::vector<std::uint32_t> bad;
+Defects manifold_defects(std::span<const Triangle> triangles, std::size_t vertices) {
+  Defects bad;
   const HalfEdges edges(triangles, vertices);
   for (std::size_t h = 0; h < 3 * triangles.size(); ++h)
     if (edges.opposite(h) == HalfEdges::none) {
-      bad.push_back(triangles[h / 3][h % 3]);
-      bad.push_back(triangles[h / 3][(h % 3 + 1) % 3]);
+      const std::uint32_t v = triangles[h / 3][h % 3], w = triangles[h / 3][(h % 3 + 1) % 3];
+      bad.push_back({std::min(v, w), std::max(v, w)});
     }
   if (!bad.empty()) return bad;
   for (std::size_t v = 0; v < vertices; ++v)
-    if (edges.fans(v) > 1) bad.push_back(static_cast<std::uint32_t>(v));
+    if (edges.fans(v) > 1) bad.push_back({static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(v)});
   return bad;
 }
 

@@ -311,7 +311,7 @@ LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>
   result.triangles = dual.triangles;
   result.defects = dual.defects;
   for (std::size_t l = 0; l < seeds.size(); ++l)
-    if (complex.twice_euler()[l] != 2 * static_cast<std::int64_t>(piece_count[l])) result.defects.push_back(static_cast<Index>(l));
+    if (complex.twice_euler()[l] != 2 * static_cast<std::int64_t>(piece_count[l])) result.defects.push_back({static_cast<Index>(l), static_cast<Index>(l)});
   std::sort(result.defects.begin(), result.defects.end());
   result.defects.erase(std::unique(result.defects.begin(), result.defects.end()), result.defects.end());
   return result;

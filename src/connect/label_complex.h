@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.h"
@@ -24,7 +25,9 @@ struct LabelComplex {
   std::size_t labels = 0;                 ///< labels in use, after splitting; new ones follow the given ones
   std::vector<CellPiece> pieces;          ///< pieces that became cells of their own, in order of new label
   std::int64_t surface_euler = 0;         ///< χ of the sampled surface; the mesh must have it (dust apart)
-  std::vector<std::uint32_t> defects;     ///< labels whose cell is not a disk or meets another along several arcs: seeds are needed
+  /// Where seeds are needed, sorted: pairs of labels whose cells meet along several arcs; (l, l) for a cell that is not a disk
+  /// or meets itself around a corner.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> defects;
 };
 
 /// Connects the cells of `labels` (one per sample, below `seeds.size()`; changed where cells are split).

@@ -5,14 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "connect/pinches.h"
 #include "connect/surface_parts.h"
 #include "cvt/starts.h"
+#include "pipeline/fineness.h"
+#include "pipeline/mend.h"
 
 namespace evenmesh {
 namespace {
 
 constexpr int count_rounds = 3;      ///< attempts to meet the vertex count
-constexpr int topology_rounds = 20;  ///< attempts to make every cell a disk
+constexpr int seed_rounds = 12;      ///< attempts to make every cell a disk with more seeds
+constexpr int topology_rounds = 40;  ///< attempts altogether
 constexpr std::size_t settling_evaluations = 5;
 
 BalanceOptions balance_options(const MeshOptions& options) {
@@ -49,14 +53,10 @@ class Cells {
     connect();
     clear_dust();
     meet_count();
-    bool dust_cleared_again = false;
-    for (int round = 0; round < topology_rounds && needs_seeds(); ++round) {
-      insert_seeds();
-      connect();
-      if (!dust_cleared_again && !unconnected().empty()) dust_cleared_again = true, clear_dust();
-    }
+    mend();
+    trim_count();
     const bool two_manifold = !needs_seeds();
-    return {std::move(seeds_), std::move(labels_), std::move(complex_.triangles), two_manifold};
+    return {std::move(seeds_), std::move(labels_), std::move(complex_.triangles), two_manifold, std::move(balls_)};
   }
 
  private:
@@ -99,18 +99,19 @@ class Cells {
   }
 
   /// Pieces of surface smaller than a cell cannot be meshed at this fineness; looked for only where cells stay unconnected.
-  void clear_dust() {
-    if (unconnected().empty()) return;
+  bool clear_dust() {
+    if (unconnected().empty()) return false;
     std::size_t dropped = 0;
     stages_.stage("connect", 0, [&] {
       dropped = drop_dust(samples_, samples_.total_area / static_cast<double>(count_), run_);
       if (dropped > 0) evaluator_ = make_evaluator();
     });
-    if (dropped == 0) return;
+    if (dropped == 0) return false;
     report_.dropped_components += dropped;
     if (samples_.size() < count_) throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
-    adjust_and_settle(count_);
+    adjust_and_settle(std::max(count_, std::min(seeds_.size(), 2 * count_)));
     connect();
+    return true;
   }
 
   void adjust_and_settle(std::size_t count) {
@@ -122,7 +123,7 @@ class Cells {
   void meet_count() {
     for (int round = 0; round < count_rounds; ++round) {
       const double made = static_cast<double>(complex_.labels), wanted = static_cast<double>(count_);
-      if (made <= 1.003 * wanted) return;
+      if (made <= 1.001 * wanted) return;
       const double seeds = made - static_cast<double>(complex_.pieces.size());
       const auto fewer = static_cast<std::size_t>(std::max(4.0, std::round(seeds * wanted / made)));
       if (made > 1.1 * wanted) {
@@ -138,29 +139,72 @@ class Cells {
 
   bool needs_seeds() const { return !complex_.defects.empty() || !unconnected().empty(); }
 
-  /// A seed at the sample farthest from the seed of each cell that is no disk, or meets another cell twice.
-  void insert_seeds() {
-    stages_.stage("connect", 0, [&] {
-      std::vector<double> farthest(seeds_.size(), -1);
-      std::vector<Vec3> place(seeds_.size());
-      for (const std::uint32_t l : complex_.defects) farthest[l] = 0;
-      for (const std::uint32_t l : unconnected()) farthest[l] = 0;
-      for (const SampleBlock& block : samples_.blocks) {
-        const Vec3 center = samples_.block_center(block);
-        for (std::uint32_t i = block.begin; i < block.end; ++i) {
-          const std::uint32_t l = labels_[i];
-          if (farthest[l] < 0) continue;
-          const Vec3 p = center + Vec3{samples_.x[i], samples_.y[i], samples_.z[i]};
-          const double distance = squared_norm(p - seeds_[l]);
-          if (distance > farthest[l]) farthest[l] = distance, place[l] = p;
-        }
+  /// Seeds, and balls where seeds cannot help, until all cells fit together.
+  void mend() {
+    const double edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
+    std::vector<Vec3> pinches;
+    bool dust_cleared = false, pinches_known = false;
+    for (int round = 0; round < topology_rounds && needs_seeds(); ++round) {
+      if (!pinches_known) pinches = stages_.stage("connect", 0, [&] { return find_pinches(samples_, run_); }), pinches_known = true;
+      auto defects = complex_.defects;
+      for (const std::uint32_t l : unconnected()) defects.push_back({l, l});
+      const Mending mending = stages_.stage("connect", 0, [&] {
+        return plan_mending(samples_, labels_, seeds_, defects, pinches, balls_, {edge, round >= seed_rounds});
+      });
+      seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
+      report_.inserted_seeds += mending.seeds.size();
+      if (!mending.changed.empty()) {
+        balls_ = BallIndex(mending.balls);
+        regularize(mending.changed, edge);
+        pinches_known = false;
       }
-      const std::size_t before = seeds_.size();
-      for (std::size_t l = 0; l < before; ++l)
-        if (farthest[l] > 0) seeds_.push_back(place[l]);
-      report_.inserted_seeds += seeds_.size() - before;
+      settle();
+      connect();
+      if ((!dust_cleared || !mending.changed.empty()) && !unconnected().empty()) {
+        dust_cleared = true;
+        if (clear_dust()) pinches_known = false;
+      }
+    }
+  }
+
+  /// Unites the changed balls with the solid.
+  void regularize(std::span<const std::uint32_t> changed, double edge) {
+    stages_.stage("regularize", 0, [&] {
+      std::vector<Ball> balls;
+      for (const std::uint32_t b : changed) balls.push_back(balls_.balls()[b]);
+      samples_ = unite_balls(samples_, balls, run_);
+      evaluator_ = make_evaluator();
+      clear_around(seeds_, balls_, changed, edge);
+      if (seeds_.size() < count_) adjust_count(*evaluator_, seeds_, count_, options_.seed + 11, run_);
+      ++report_.regularization_rounds;
     });
-    settle();
+  }
+
+  /// Vertices the mesh will have.
+  std::size_t vertices() const {
+    std::vector<char> used(seeds_.size(), 0);
+    for (const Triangle& t : complex_.triangles)
+      for (const std::uint32_t l : t) used[l] = 1;
+    return static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
+  }
+
+  /// A few vertices too many or too few are corrected where the topology can do without them.
+  void trim_count() {
+    if (needs_seeds()) return;
+    for (int attempt = 0; attempt < count_rounds; ++attempt) {
+      const auto made = static_cast<std::int64_t>(vertices()), excess = made - static_cast<std::int64_t>(count_);
+      if (std::abs(excess) * 1000 <= static_cast<std::int64_t>(count_)) return;
+      const auto change = std::max<std::int64_t>(1, std::abs(excess) >> attempt) * (excess > 0 ? 1 : -1);
+      const auto target = static_cast<std::int64_t>(seeds_.size()) - change;
+      if (target < 4) return;
+      auto seeds = seeds_;
+      auto labels = labels_;
+      auto complex = complex_;
+      adjust_and_settle(static_cast<std::size_t>(target));
+      connect();
+      if (needs_seeds() || std::abs(static_cast<std::int64_t>(vertices()) - static_cast<std::int64_t>(count_)) >= std::abs(excess))
+        seeds_ = std::move(seeds), labels_ = std::move(labels), complex_ = std::move(complex);
+    }
   }
 
   SampleSet& samples_;
@@ -173,6 +217,7 @@ class Cells {
   std::vector<Vec3> seeds_;
   std::vector<std::uint32_t> labels_;
   LabelComplex complex_;
+  BallIndex balls_{{}};
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 /// The loop between cells and triangles: connect, insert seeds where the topology needs them, until two-manifold.
 
+#include "connect/balls.h"
 #include "connect/label_complex.h"
 #include "cvt/balance.h"
 #include "evenmesh/mesh_shape.h"
@@ -13,6 +14,7 @@ struct ConnectedCells {
   std::vector<std::uint32_t> labels;    ///< one per sample
   std::vector<Triangle> triangles;      ///< of labels
   bool two_manifold = false;
+  BallIndex balls{{}};                  ///< united with the solid where the grid could not tell its topology
 };
 
 /// Balances about `count` seeds on `samples` (dust is removed from them) and connects their cells; the report gets counts,

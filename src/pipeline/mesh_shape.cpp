@@ -31,13 +31,44 @@ void check(const MeshOptions& o) {
   if (o.bounds && o.bounds->empty()) throw InvalidInput("the bounds are empty: each lower limit must be below its upper one");
 }
 
+/// Onto the surface of the shape and the balls united with it.
+class RegularizedProjector : public Projector {
+ public:
+  RegularizedProjector(std::unique_ptr<Projector> inner, const BallIndex& balls) : inner_(std::move(inner)), balls_(balls) {}
+  Vec3 project(const Vec3& p, double limit) const override {
+    const Vec3 q = inner_ ? inner_->project(p, limit) : p, out = balls_.outside(q);
+    if (out == q) return q;
+    // The shape's own surface is covered here: the spheres count.
+    const Vec3 on_sphere = onto_sphere(p, limit);
+    return squared_norm(on_sphere - p) <= limit * limit ? on_sphere : p;
+  }
+
+ private:
+  /// From outside the nearest sphere within the limit, from inside the way out.
+  Vec3 onto_sphere(const Vec3& p, double limit) const {
+    double nearest = limit;
+    Vec3 best = p;
+    balls_.near(p, limit, [&](std::uint32_t b) {
+      const Ball& ball = balls_.balls()[b];
+      const Vec3 d = p - ball.center;
+      const double length = norm(d), distance = length - ball.radius;
+      if (length > 0 && distance > 0 && distance < nearest) nearest = distance, best = ball.center + d * (ball.radius / length);
+    });
+    return balls_.outside(best);
+  }
+
+  std::unique_ptr<Projector> inner_;
+  const BallIndex& balls_;
+};
+
 class Job {
  public:
   Job(const Shape& shape, const MeshOptions& options, Run& run) : shape_(shape), options_(options), run_(run), stages_(run, report_) {}
 
   MeshResult result() {
     sample();
-    ConnectedCells cells = balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
+    ConnectedCells& cells = cells_;
+    cells = balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
     Mesh mesh = stages_.stage("place", 0.1, [&] { return place(cells); });
     stages_.stage("refine", 0.05, [&] { refine(mesh, cells.labels); });
     stages_.stage("measure", 0.05, [&] { finish(mesh, cells.two_manifold); });
@@ -89,6 +120,7 @@ class Job {
     edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
     if (options_.placement != Placement::centroid) {
       projector_ = make_projector(shape_, shape_.bounds, run_);
+      if (!cells.balls.balls().empty()) projector_ = std::make_unique<RegularizedProjector>(std::move(projector_), cells.balls);
       if (projector_)
         parallel_for(run_, mesh.vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
           for (std::size_t v = begin; v < end; ++v) mesh.vertices[v] = projector_->project(mesh.vertices[v], 0.5 * edge_);
@@ -139,6 +171,7 @@ class Job {
   Report report_;
   Stages stages_;
   SampleSet samples_;
+  ConnectedCells cells_;
   std::unique_ptr<Projector> projector_;
   std::vector<std::uint32_t> vertex_of_label_;  ///< 0xffffffff: none, its piece of surface is dust
   double edge_ = 0;
