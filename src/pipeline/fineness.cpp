@@ -7,12 +7,15 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "sample/sample.h"
 
 namespace evenmesh {
 namespace {
 
 constexpr double wanted_alpha = 100, least_alpha = 50;
 constexpr std::size_t most_cells = 8192;
+constexpr std::size_t scouting_cells = 96;
+constexpr double least_cells_across = 1.2;  ///< thinner parts may lie between the grid points
 
 struct Pairs {
   std::vector<std::pair<float, float>> curvature, thickness;  ///< (value, area)
@@ -74,6 +77,20 @@ SurfaceScale measure_scale(const SampleSet& coarse, Run& run) {
   scale.curvature_radius = bend > 0 ? 1 / bend : std::numeric_limits<double>::infinity();
   scale.thickness = quantile(all.thickness, 0.02);
   return scale;
+}
+
+SurfaceScale scout_scale(const Shape& shape, std::size_t finest, Run& run) {
+  finest = std::max(finest, 4 * scouting_cells);
+  for (std::size_t cells = scouting_cells;; cells *= 2) {
+    const bool last = 2 * cells > finest;
+    try {
+      const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, cells), run);
+      const SurfaceScale scale = measure_scale(samples, run);
+      if (last || scale.thickness > least_cells_across * samples.grid.spacing) return scale;
+    } catch (const UnusableInput&) {
+      if (last) throw;
+    }
+  }
 }
 
 Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const MeshOptions& options, std::vector<Notice>& notices) {

@@ -18,6 +18,11 @@ struct SurfaceScale {
 /// through the solid. Only parts thinner than eight grid cells are seen as thin. Cost: O(samples).
 SurfaceScale measure_scale(const SampleSet& coarse, Run& run);
 
+/// Samples the shape coarsely and measures it. A grid that is too coarse for thin parts sees holes in them, or nothing at all;
+/// then finer ones are tried, up to `finest` cells along the longest side (at least four times the coarsest).
+/// @throws UnusableInput  no surface within the bounds
+SurfaceScale scout_scale(const Shape& shape, std::size_t finest, Run& run);
+
 /// Mean edge length of an even mesh with n vertices on an area: √(2·area / (√3·n)), and back.
 double edge_length_of(double area, double vertices);
 double vertices_of(double area, double edge_length);

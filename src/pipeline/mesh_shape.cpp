@@ -19,8 +19,6 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t scouting_resolution = 96;
-
 void check(const MeshOptions& o) {
   if (o.vertices && o.edge_length) throw InvalidInput("give a vertex count or an edge length, not both");
   if (o.vertices && (*o.vertices < 4 || *o.vertices > 1'000'000'000)) throw InvalidInput("the vertex count must lie in [4, 1e9]");
@@ -84,8 +82,7 @@ class Job {
       shape_.bounds = stages_.stage("sample", 0, [&] { return find_bounds(*shape_.field()); });
     }
     const Box& bounds = shape_.bounds;
-    samples_ = stages_.stage("sample", 0.02, [&] { return sample_shape(shape_, make_grid(bounds, scouting_resolution), run_); });
-    const SurfaceScale scale = stages_.stage("sample", 0, [&] { return measure_scale(samples_, run_); });
+    const SurfaceScale scale = stages_.stage("sample", 0.02, [&] { return scout_scale(shape_, options_.resolution.value_or(0), run_); });
     const Fineness fineness = choose_fineness(scale, bounds, options_, report_.notices);
     samples_ = stages_.stage("sample", 0.1, [&] { return sample_shape(shape_, make_grid(bounds, fineness.resolution), run_); });
     report_.seeds_asked = fineness.vertices;

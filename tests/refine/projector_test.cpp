@@ -25,6 +25,23 @@ TEST(MeshProjector, FindsTheClosestPointWithinTheLimit) {
   }
 }
 
+TEST(MeshProjector, CapsAreFacesOfTheBounds) {
+  evenmesh::Run run(1);
+  const Shape shape = shape_from_mesh(make_icosphere(4));
+  const Box bounds{{-2, -2, -2}, {0.5, 2, 2}};
+  const auto projector = make_projector(shape, bounds, run);
+  const auto expect_near = [](const Vec3& p, const Vec3& q) { EXPECT_LT(norm(p - q), 0.004); };  // of the faceted ball
+  expect_near(projector->project({0.53, 0.2, 0.1}, 0.2), {0.5, 0.2, 0.1});
+  expect_near(projector->project({0.45, 0.2, 0.1}, 0.2), {0.5, 0.2, 0.1});
+  expect_near(projector->project({0, 0, 1.03}, 0.2), {0, 0, 1});
+  expect_near(projector->project({-1.1, 0, 0}, 0.2), {-1, 0, 0});
+  const Vec3 rim{0.5, std::sqrt(0.75), 0};
+  EXPECT_LT(norm(projector->project(rim + Vec3{0.05, 0.02, 0}, 0.2) - rim), 0.06);
+  EXPECT_LE(projector->project(rim + Vec3{0.05, -0.01, 0}, 0.2).x, 0.5);
+  const Vec3 middle{0, 0, 0};
+  EXPECT_EQ(projector->project(middle, 0.2), middle) << "no surface within the limit";
+}
+
 TEST(FieldProjector, LandsOnTheZeroSet) {
   evenmesh::Run run(1);
   for (const char* name : {"sphere", "torus", "tangle", "octic", "heart"}) {

@@ -1,0 +1,213 @@
+#include <nlohmann/json.hpp>
+
+#include "pipeline/pipeline_testing.h"
+
+namespace evenmesh {
+namespace {
+
+TEST(MeshOptions, OutOfRangeIsRefused) {
+  const Shape ball = gallery_shape("sphere");
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const MeshOptions wrong[] = {
+      {.vertices = 3},
+      {.vertices = 1'000'000'001},
+      {.vertices = 100, .edge_length = 0.1},
+      {.edge_length = 0},
+      {.edge_length = -1},
+      {.edge_length = nan},
+      {.edge_length = infinity},
+      {.vertices = 100, .resolution = 7},
+      {.vertices = 100, .resolution = 8193},
+      {.vertices = 100, .bounds = Box{}},
+      {.vertices = 100, .bounds = Box{{0, 0, 0}, {nan, 1, 1}}},
+      {.vertices = 100, .bounds = Box{{0, 0, 0}, {infinity, 1, 1}}},
+      {.vertices = 100, .bounds = Box{{0, 0, 0}, {0, 0, 0}}},
+      {.vertices = 100, .iterations = 10'001},
+      {.vertices = 100, .tolerance = 0},
+      {.vertices = 100, .tolerance = 1},
+      {.vertices = 100, .tolerance = nan},
+  };
+  for (std::size_t i = 0; i < std::size(wrong); ++i) EXPECT_THROW(meshed(ball, wrong[i]), InvalidInput) << "case " << i;
+}
+
+struct Choice {
+  const char* name;
+  MeshOptions options;
+  friend void PrintTo(const Choice& c, std::ostream* out) { *out << c.name; }
+};
+
+class EveryChoice : public testing::TestWithParam<Choice> {};
+
+TEST_P(EveryChoice, GivesAGoodMeshOfTheSameBytesForAnyNumberOfThreads) {
+  MeshOptions options = GetParam().options;
+  options.vertices = 500;
+  const Shape torus = gallery_shape("torus");
+  const MeshResult one = meshed(torus, options, 1), two = meshed(torus, options, 2), three = meshed(torus, options, 3);
+  expect_good_mesh(one);
+  expect_count(one, 500);
+  EXPECT_EQ(one.report.quality.euler, 0);
+  EXPECT_GT(one.report.quality.q_avg, 0.8);
+  EXPECT_TRUE(same_mesh(one.mesh, two.mesh));
+  EXPECT_TRUE(same_mesh(one.mesh, three.mesh));
+  EXPECT_EQ(one.report.energies, two.report.energies);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, EveryChoice,
+    testing::Values(Choice{"fast", {.quality = Quality::fast}}, Choice{"normal", {}},
+                    Choice{"high", {.quality = Quality::high}}, Choice{"lloyd", {.optimizer = Optimizer::lloyd}},
+                    Choice{"random", {.start = Start::random}}, Choice{"blue_noise", {.start = Start::blue_noise}},
+                    Choice{"centroid", {.placement = Placement::centroid}},
+                    Choice{"constrained", {.placement = Placement::constrained}},
+                    Choice{"few_iterations", {.iterations = 3}}, Choice{"other_seed", {.seed = 77}}),
+    [](const auto& of) { return std::string(of.param.name); });
+
+TEST(MeshOptions, ThreadsDoNotChangeMeshInputsOrThinParts) {
+  for (const Shape& shape : {shape_from_mesh(make_torus()), gallery_shape("thin-plate"), gallery_shape("octic")}) {
+    const MeshOptions options{.vertices = 1200, .quality = Quality::fast};
+    EXPECT_TRUE(same_mesh(meshed(shape, options, 1).mesh, meshed(shape, options, 2).mesh)) << shape.name;
+  }
+}
+
+TEST(MeshOptions, SeedsChangeTheMesh) {
+  const Shape ball = gallery_shape("sphere");
+  EXPECT_FALSE(
+      same_mesh(meshed(ball, {.vertices = 200, .seed = 1}).mesh, meshed(ball, {.vertices = 200, .seed = 2}).mesh));
+  EXPECT_TRUE(
+      same_mesh(meshed(ball, {.vertices = 200, .seed = 2}).mesh, meshed(ball, {.vertices = 200, .seed = 2}).mesh));
+}
+
+TEST(MeshOptions, EdgeLengthIsMet) {
+  for (const char* name : {"sphere", "torus", "tangle"}) {
+    const Shape shape = gallery_shape(name);
+    const double edge = 0.05 * shape.bounds.longest_side();
+    const MeshResult result = meshed(shape, {.edge_length = edge});
+    expect_good_mesh(result);
+    EXPECT_NEAR(result.report.quality.edge_length_avg, edge, 0.05 * edge) << name;
+  }
+}
+
+TEST(MeshOptions, WithoutFinenessOneIsEstimatedAndSaid) {
+  for (const char* name : {"sphere", "torus", "tangle"}) {
+    const MeshResult result = meshed(gallery_shape(name), {.quality = Quality::fast});
+    expect_good_mesh(result);
+    EXPECT_GE(result.mesh.vertices.size(), 200u) << name;
+    EXPECT_LE(result.mesh.vertices.size(), 20'000u) << name;
+    EXPECT_TRUE(has_notice(result.report, "no -n or -l given"));
+  }
+}
+
+TEST(MeshOptions, TooFewSamplesLowerTheCount) {
+  const MeshResult result = meshed(gallery_shape("sphere"), {.vertices = 5000, .resolution = 40});
+  expect_good_mesh(result);
+  EXPECT_LT(result.mesh.vertices.size(), 1000u);
+  EXPECT_GE(result.report.alpha, 49.0);
+  EXPECT_EQ(result.report.resolution, 40u);
+  EXPECT_TRUE(has_notice(result.report, "fewer than 50 samples"));
+}
+
+TEST(MeshOptions, DefaultResolutionGivesAHundredSamplesPerSeed) {
+  for (const char* name : {"sphere", "cube", "torus"})
+    EXPECT_GE(meshed(gallery_shape(name), {.vertices = 300}).report.alpha, 99) << name;
+}
+
+TEST(MeshOptions, VeryFewVerticesStillCloseTheSurface) {
+  for (const std::size_t vertices : {4u, 6u, 12u, 40u}) {
+    const MeshResult ball = meshed(gallery_shape("sphere"), {.vertices = vertices});
+    expect_good_mesh(ball);
+    EXPECT_EQ(ball.report.quality.euler, 2) << vertices;
+    const MeshResult torus = meshed(gallery_shape("torus"), {.vertices = vertices});
+    expect_good_mesh(torus);
+    // The hole stays, unless it was closed on purpose.
+    EXPECT_TRUE(torus.report.quality.euler == 0 || torus.report.regularization_rounds > 0) << vertices;
+    expect_count(torus, vertices);
+  }
+}
+
+TEST(MeshOptions, MoreEffortGivesBetterMeshes) {
+  const Shape shape = gallery_shape("tangle");
+  const auto quality = [&](Quality q) { return meshed(shape, {.vertices = 800, .quality = q}).report; };
+  const Report fast = quality(Quality::fast), high = quality(Quality::high);
+  EXPECT_LT(high.energy_ratio, fast.energy_ratio);
+  EXPECT_GT(high.quality.q_avg, fast.quality.q_avg);
+}
+
+TEST(Runs, CancelBeforeAndDuringTheRun) {
+  const Shape ball = gallery_shape("sphere");
+  evenmesh::Run before(1);
+  before.cancel();
+  EXPECT_THROW(mesh_shape(ball, {.vertices = 200}, before), Cancelled);
+  for (const char* stage : {"sample", "balance", "connect", "place", "refine", "measure"}) {
+    evenmesh::Run during(2);
+    during.on_progress([&](std::string_view running, double) {
+      if (running == stage) during.cancel();
+    });
+    EXPECT_THROW(mesh_shape(ball, {.vertices = 200}, during), Cancelled) << stage;
+  }
+}
+
+TEST(Runs, ProgressGrowsToOne) {
+  evenmesh::Run run(2);
+  double last = 0;
+  std::size_t calls = 0;
+  run.on_progress([&](std::string_view stage, double fraction) {
+    EXPECT_FALSE(stage.empty());
+    EXPECT_GE(fraction, last);
+    last = fraction;
+    ++calls;
+  });
+  mesh_shape(gallery_shape("thin-plate"), {.vertices = 300}, run);
+  EXPECT_EQ(last, 1);
+  EXPECT_GT(calls, 5u);
+}
+
+TEST(Reports, AreJsonWithTheKeysOfTheCommandLine) {
+  const MeshResult result = meshed(gallery_shape("torus"), {.vertices = 300});
+  const auto json = nlohmann::json::parse(report_json(result.report));
+  for (const char* key : {"vertices",
+                          "faces",
+                          "q_min",
+                          "q_avg",
+                          "theta_min",
+                          "theta_avg",
+                          "irregular_ratio",
+                          "boundary_edges",
+                          "non_manifold_edges",
+                          "non_manifold_vertices",
+                          "components",
+                          "euler",
+                          "closed",
+                          "oriented",
+                          "area",
+                          "volume",
+                          "edge_length_avg",
+                          "seeds",
+                          "samples",
+                          "alpha",
+                          "energy_ratio",
+                          "evaluations",
+                          "regularization_rounds",
+                          "seconds",
+                          "peak_memory_bytes",
+                          "self_intersections",
+                          "notices"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  EXPECT_EQ(json["vertices"], result.mesh.vertices.size());
+  EXPECT_EQ(json["faces"], result.mesh.triangles.size());
+  EXPECT_EQ(json["euler"], 0);
+  EXPECT_EQ(json["closed"], true);
+  EXPECT_EQ(json["evaluations"], json["energies"].size());
+  for (const char* stage : {"sample", "balance", "connect", "place", "refine", "measure"})
+    EXPECT_TRUE(json["seconds"].contains(stage)) << stage;
+}
+
+TEST(Reports, OfNothingAreJsonToo) {
+  Report report;
+  report.notices.push_back({true, "a \"quoted\" sentence\n"});
+  const auto json = nlohmann::json::parse(report_json(report));
+  EXPECT_EQ(json["notices"][0]["text"], "a \"quoted\" sentence\n");
+  EXPECT_EQ(json["notices"][0]["promise_broken"], true);
+}
+
+}  // namespace
+}  // namespace evenmesh
