@@ -23,15 +23,15 @@ enum class Placement { centroid, constrained, quadric };
 /// What the mesh shall be like. Nothing in here depends on the machine.
 struct MeshOptions {
   /// How fine; at most one of the two. Neither: estimated from area, curvature and the thinnest part.
-  std::optional<std::size_t> vertices;    ///< vertex count, [4, 1e9]; met within 0.5 % unless the topology needs more
-  std::optional<double> edge_length;      ///< mean edge length in model units, > 0
-  std::optional<std::size_t> resolution;  ///< samples along the longest side of the bounds, [8, 8192]; default: α ≥ 100 samples per seed
-  std::optional<Box> bounds;              ///< replaces the shape's own; a surface cut by it is capped
+  std::optional<std::size_t> vertices{};    ///< vertex count, [4, 1e9]; met within 0.5 % unless the topology needs more
+  std::optional<double> edge_length{};      ///< mean edge length in model units, > 0
+  std::optional<std::size_t> resolution{};  ///< samples along the longest side of the bounds, [8, 8192]; default: α ≥ 100 samples per seed
+  std::optional<Box> bounds{};              ///< replaces the shape's own; a surface cut by it is capped
   Quality quality = Quality::normal;      ///< effort of the optimization
   Optimizer optimizer = Optimizer::lbfgs;
   Start start = Start::coarse_to_fine;
   Placement placement = Placement::quadric;
-  std::optional<std::size_t> iterations;  ///< evaluations of the energy per level at most, [0, 10000]; default by quality
+  std::optional<std::size_t> iterations{};  ///< evaluations of the energy per level at most, [0, 10000]; default by quality
   double tolerance = 1e-4;                ///< stop when the mean seed moves less than this share of the seed spacing, (0, 1)
   std::uint64_t seed = 1;                 ///< of the random numbers
 };

@@ -86,6 +86,12 @@ class Cells {
     });
   }
 
+  /// Back to the seeds before connect(): it would split their cells again, and those of the pieces with them.
+  void forget_pieces() {
+    seeds_.resize(seeds_.size() - complex_.pieces.size());
+    complex_.pieces.clear();
+  }
+
   /// Labels that own samples but no triangle.
   std::vector<std::uint32_t> unconnected() const {
     std::vector<char> state(seeds_.size(), 0);
@@ -129,8 +135,8 @@ class Cells {
       if (made > 1.1 * wanted) {
         balance(fewer);
       } else {
-        const std::size_t given = seeds_.size() - complex_.pieces.size();
-        seeds_.resize(given);
+        forget_pieces();
+        const std::size_t given = seeds_.size();
         adjust_and_settle(std::min(given, std::max<std::size_t>(4, given - static_cast<std::size_t>(made - wanted))));
       }
       connect();
@@ -151,6 +157,7 @@ class Cells {
       const Mending mending = stages_.stage("connect", 0, [&] {
         return plan_mending(samples_, labels_, seeds_, defects, pinches, balls_, {edge, round >= seed_rounds});
       });
+      forget_pieces();
       seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
       report_.inserted_seeds += mending.seeds.size();
       if (!mending.changed.empty()) {
@@ -195,11 +202,12 @@ class Cells {
       const auto made = static_cast<std::int64_t>(vertices()), excess = made - static_cast<std::int64_t>(count_);
       if (std::abs(excess) * 1000 <= static_cast<std::int64_t>(count_)) return;
       const auto change = std::max<std::int64_t>(1, std::abs(excess) >> attempt) * (excess > 0 ? 1 : -1);
-      const auto target = static_cast<std::int64_t>(seeds_.size()) - change;
+      const auto given = static_cast<std::int64_t>(seeds_.size() - complex_.pieces.size()), target = given - change;
       if (target < 4) return;
       auto seeds = seeds_;
       auto labels = labels_;
       auto complex = complex_;
+      forget_pieces();
       adjust_and_settle(static_cast<std::size_t>(target));
       connect();
       if (needs_seeds() || std::abs(static_cast<std::int64_t>(vertices()) - static_cast<std::int64_t>(count_)) >= std::abs(excess))

@@ -26,8 +26,8 @@ TEST(Balance, GivesTheCountFromEveryStart) {
   for (const SeedStart start : {SeedStart::random, SeedStart::blue_noise, SeedStart::coarse_to_fine})
     for (const bool lloyd : {false, true})
       for (const std::size_t count : {4u, 5u, 311u}) {
-        const BalanceResult result = balance_seeds(
-            evaluator, count, {.start = start, .lloyd = lloyd, .evaluations = 12, .coarse_evaluations = 12}, run);
+        const BalanceResult result =
+            balance_seeds(evaluator, count, {.start = start, .lloyd = lloyd, .evaluations = 12}, run);
         ASSERT_EQ(result.seeds.size(), count);
         EXPECT_GT(result.energy_ratio, 0);
         if (count < 100) continue;
@@ -44,7 +44,7 @@ TEST(Balance, ManyLevelsGiveTheCount) {
     const SampleSet samples = sampled(mesh, 150, 2);
     CellEvaluator evaluator(samples, run);
     for (const std::size_t count : {1203u, 1500u}) {
-      const BalanceResult result = balance_seeds(evaluator, count, {.evaluations = 8, .coarse_evaluations = 20}, run);
+      const BalanceResult result = balance_seeds(evaluator, count, {.evaluations = 8}, run);
       EXPECT_EQ(result.seeds.size(), count);
       EXPECT_LT(result.energy_ratio, 1.05);
     }
@@ -57,8 +57,7 @@ TEST(Balance, SameBitsForAnyNumberOfThreads) {
   for (unsigned threads = 1; threads <= 3; ++threads) {
     evenmesh::Run run(threads);
     CellEvaluator evaluator(samples, run);
-    results.push_back(with_threads(
-        run, [&] { return balance_seeds(evaluator, 1300, {.evaluations = 6, .coarse_evaluations = 10}, run); }));
+    results.push_back(with_threads(run, [&] { return balance_seeds(evaluator, 1300, {.evaluations = 6}, run); }));
   }
   for (const BalanceResult& result : results) {
     EXPECT_TRUE(same_bytes(result.seeds, results[0].seeds));
@@ -70,7 +69,7 @@ TEST(Balance, AnnealingDoesNotRaiseTheEnergyMuch) {
   evenmesh::Run run(2);
   const SampleSet samples = sampled(make_icosphere(4), 64, 2);
   CellEvaluator evaluator(samples, run);
-  const BalanceOptions plain{.start = SeedStart::random, .evaluations = 30, .coarse_evaluations = 20};
+  const BalanceOptions plain{.start = SeedStart::random, .evaluations = 30};
   BalanceOptions annealed = plain;
   annealed.annealing_rounds = 4;
   const double before = balance_seeds(evaluator, 100, plain, run).energy_ratio;
@@ -83,8 +82,7 @@ TEST(Balance, RefusesWhatCannotBeMet) {
   CellEvaluator evaluator(samples, run);
   EXPECT_THROW(balance_seeds(evaluator, 3, {}, run), InvalidInput);
   EXPECT_THROW(balance_seeds(evaluator, samples.size() + 1, {}, run), InvalidInput);
-  EXPECT_EQ(balance_seeds(evaluator, samples.size() / 4, {.evaluations = 2, .coarse_evaluations = 2}, run).seeds.size(),
-            samples.size() / 4);
+  EXPECT_EQ(balance_seeds(evaluator, samples.size() / 4, {.evaluations = 2}, run).seeds.size(), samples.size() / 4);
 }
 
 TEST(Balance, CancelStopsIt) {
