@@ -40,15 +40,14 @@ class EveryChoice : public testing::TestWithParam<Choice> {};
 
 TEST_P(EveryChoice, GivesAGoodMeshOfTheSameBytesForAnyNumberOfThreads) {
   MeshOptions options = GetParam().options;
-  options.vertices = 500;
+  options.vertices = 300;
   const Shape torus = gallery_shape("torus");
-  const MeshResult one = meshed(torus, options, 1), two = meshed(torus, options, 2), three = meshed(torus, options, 3);
+  const MeshResult one = meshed(torus, options, 1), two = meshed(torus, options, 2);
   expect_good_mesh(one);
-  expect_count(one, 500);
+  expect_count(one, 300);
   EXPECT_EQ(one.report.quality.euler, 0);
   EXPECT_GT(one.report.quality.q_avg, 0.8);
   EXPECT_TRUE(same_mesh(one.mesh, two.mesh));
-  EXPECT_TRUE(same_mesh(one.mesh, three.mesh));
   EXPECT_EQ(one.report.energies, two.report.energies);
 }
 
@@ -63,9 +62,11 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& of) { return std::string(of.param.name); });
 
 TEST(MeshOptions, ThreadsDoNotChangeMeshInputsOrThinParts) {
-  for (const Shape& shape : {shape_from_mesh(make_torus()), gallery_shape("thin-plate"), gallery_shape("octic")}) {
-    const MeshOptions options{.vertices = 1200, .quality = Quality::fast};
-    EXPECT_TRUE(same_mesh(meshed(shape, options, 1).mesh, meshed(shape, options, 2).mesh)) << shape.name;
+  for (const Shape& shape : {shape_from_mesh(make_torus()), gallery_shape("thin-plate"), gallery_shape("tangle")}) {
+    const MeshOptions options{.vertices = 600, .quality = Quality::fast};
+    const Mesh mesh = meshed(shape, options, 1).mesh;
+    for (const unsigned threads : {2u, 3u})
+      EXPECT_TRUE(same_mesh(mesh, meshed(shape, options, threads).mesh)) << shape.name;
   }
 }
 
@@ -88,7 +89,7 @@ TEST(MeshOptions, EdgeLengthIsMet) {
 }
 
 TEST(MeshOptions, WithoutFinenessOneIsEstimatedAndSaid) {
-  for (const char* name : {"sphere", "torus", "tangle"}) {
+  for (const char* name : {"sphere", "torus"}) {
     const MeshResult result = meshed(gallery_shape(name), {.quality = Quality::fast});
     expect_good_mesh(result);
     EXPECT_GE(result.mesh.vertices.size(), 200u) << name;
@@ -126,7 +127,7 @@ TEST(MeshOptions, VeryFewVerticesStillCloseTheSurface) {
 
 TEST(MeshOptions, MoreEffortGivesBetterMeshes) {
   const Shape shape = gallery_shape("tangle");
-  const auto quality = [&](Quality q) { return meshed(shape, {.vertices = 800, .quality = q}).report; };
+  const auto quality = [&](Quality q) { return meshed(shape, {.vertices = 400, .quality = q}).report; };
   const Report fast = quality(Quality::fast), high = quality(Quality::high);
   EXPECT_LT(high.energy_ratio, fast.energy_ratio);
   EXPECT_GT(high.quality.q_avg, fast.quality.q_avg);
