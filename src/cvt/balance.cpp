@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/random.h"
@@ -48,9 +49,7 @@ class Balance {
     for (std::size_t level = levels_;; --level) {
       const bool finest = level == 0, coarsest = level == levels_;
       CellEvaluator& evaluator = finest ? pyramid_.finest() : pyramid_.for_seeds(seeds_.size());
-      double energy = relax(evaluator, seeds_, finest     ? options_.evaluations
-                                               : coarsest ? options_.coarsest_evaluations
-                                                          : options_.coarse_evaluations);
+      double energy = relax(evaluator, seeds_, evaluations(coarsest));
       if (coarsest && options_.annealing_rounds > 0) anneal(evaluator, energy);
       if (finest) break;
       split(count_at(level - 1));
@@ -75,6 +74,14 @@ class Balance {
     return n;
   }
 
+  /// Seeds that were split from balanced ones need few evaluations, the fewer the smaller the share of irregular places
+  /// among them; those that start anywhere need many.
+  std::size_t evaluations(bool coarsest) const {
+    if (options_.evaluations) return *options_.evaluations;
+    const double few = std::clamp(20 * std::pow(4000.0 / static_cast<double>(seeds_.size()), 0.3), 8.0, 30.0);
+    return static_cast<std::size_t>(std::lround(options_.effort * (!coarsest ? few : levels_ == 0 ? 100 : 40)));
+  }
+
   void start() {
     const std::size_t n = count_at(levels_);
     const SampleSet& samples = pyramid_.for_seeds(n).samples();
@@ -96,7 +103,7 @@ class Balance {
       const double amplitude = 0.25 * spacing * (1 - round / rounds);
       std::vector<Vec3> shaken = seeds_;
       for (Vec3& s : shaken) s += amplitude * Vec3{random.gaussian(), random.gaussian(), random.gaussian()};
-      const double energy = relax(evaluator, shaken, options_.coarsest_evaluations);
+      const double energy = relax(evaluator, shaken, evaluations(true));
       if (energy < best) best = energy, seeds_.swap(shaken);
     }
   }
@@ -110,7 +117,7 @@ class Balance {
     const std::int64_t change = (static_cast<std::int64_t>(target) - after) / 4;
     if (std::abs(change) * 100 > now) {
       adjust_count(evaluator, seeds_, static_cast<std::size_t>(std::max<std::int64_t>(4, now + change)), options_.seed + 2, run_);
-      relax(pyramid_.for_seeds(seeds_.size()), seeds_, options_.coarse_evaluations / 3);
+      relax(pyramid_.for_seeds(seeds_.size()), seeds_, evaluations(false) / 3);
     }
     seeds_ = split_seeds(evaluator, seeds_, run_);
     adjust_count(evaluator, seeds_, target, options_.seed + 3, run_);

@@ -1,6 +1,8 @@
 #pragma once
 /// Seeds in balance: the whole schedule from samples to a converged CVT.
 
+#include <optional>
+
 #include "cvt/optimize.h"
 
 namespace evenmesh {
@@ -10,9 +12,8 @@ enum class SeedStart { random, blue_noise, coarse_to_fine };
 struct BalanceOptions {
   SeedStart start = SeedStart::coarse_to_fine;
   bool lloyd = false;
-  std::size_t evaluations = 20;         ///< of the energy on the finest level, at most
-  std::size_t coarsest_evaluations = 40;  ///< on the coarsest level
-  std::size_t coarse_evaluations = 24;  ///< on the levels between
+  double effort = 1;                    ///< scales the number of evaluations on every level, > 0
+  std::optional<std::size_t> evaluations;  ///< of the energy on every level, instead
   std::size_t annealing_rounds = 0;     ///< on the coarsest level
   double tolerance = 1e-4;              ///< see OptimizeOptions
   std::uint64_t seed = 1;
@@ -31,7 +32,7 @@ struct BalanceResult {
 /// of irregular vertices stays that of the coarsest level, where balancing costs almost nothing.
 ///
 /// @param evaluator  of the sampled surface
-/// Guarantee: exactly `count` seeds; same bits for any number of threads. Cost: about 1.4 · evaluations · samples.
+/// Guarantee: exactly `count` seeds; same bits for any number of threads. Cost: 10 to 30 evaluations of all samples.
 /// @throws InvalidInput  if count < 4 or there are fewer samples than seeds
 BalanceResult balance_seeds(CellEvaluator& evaluator, std::size_t count, const BalanceOptions& options, Run& run);
 

@@ -65,7 +65,8 @@ class SeedGrid {
 /// The seeds around a chunk of blocks, and those of them that matter to one block.
 class ChunkSeeds {
  public:
-  ChunkSeeds(const SeedGrid& grid, std::span<const Vec3> seeds, double margin) : grid_(grid), seeds_(seeds), margin_(margin) {}
+  ChunkSeeds(const SeedGrid& grid, std::span<const Vec3> seeds, std::span<const float> margins, float largest_margin)
+      : grid_(grid), seeds_(seeds), margins_(margins), largest_margin_(largest_margin) {}
 
   /// Collects the seeds within `reach` of a box.
   void collect(Box box, double reach) {
@@ -77,9 +78,11 @@ class ChunkSeeds {
     });
     origin_ = box.center();
     const std::size_t capacity = (near_.size() + 7) / 8 * 8;
-    for (auto* array : {&near_x_, &near_y_, &near_z_, &distance_}) array->resize(capacity);
+    for (auto* array : {&near_x_, &near_y_, &near_z_, &near_margin_, &scratch_}) array->resize(capacity);
+    hits_.resize(capacity);
     for (std::size_t i = 0; i < near_.size(); ++i) {
       const Vec3 p = seeds_[near_[i]] - origin_;
+      near_margin_[i] = margins_[near_[i]];
       near_x_[i] = static_cast<float>(p.x), near_y_[i] = static_cast<float>(p.y), near_z_[i] = static_cast<float>(p.z);
     }
   }
@@ -89,23 +92,24 @@ class ChunkSeeds {
     const Vec3 center = block_center + Vec3{box.center[0], box.center[1], box.center[2]};
     const Vec3 from = center - origin_;
     const float at[3] = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
-    const float second = distances_to(at, near_x_.data(), near_y_.data(), near_z_.data(), near_.size(), distance_.data());
-    // With fewer than two seeds in reach there is no bound yet, unless there is only one seed at all.
-    if (near_.size() < std::min<std::size_t>(2, seeds_.size())) return needed_ = 2 * reach_ + grid_.cell(), false;
-    const double radius = norm({box.half[0], box.half[1], box.half[2]});
-    const double limit = near_.size() < 2 ? reach_ : std::sqrt(second) * (1 + 1e-4) + 2 * radius + 4 * margin_;
-    if (limit > reach_ && near_.size() < seeds_.size()) return needed_ = limit, false;
-    const auto limit2 = static_cast<float>(limit * limit);
-    x_.clear(), y_.clear(), z_.clear(), seed_.clear();
-    for (std::size_t i = 0; i < near_.size(); ++i) {
-      if (distance_[i] > limit2) continue;
-      const Vec3 offset = seeds_[near_[i]] - block_center;
-      x_.push_back(static_cast<float>(offset.x)), y_.push_back(static_cast<float>(offset.y)), z_.push_back(static_cast<float>(offset.z));
-      seed_.push_back(near_[i]);
+    const auto radius = static_cast<float>(norm({box.half[0], box.half[1], box.half[2]}));
+    const SeedsInReach found = seeds_in_reach(at, radius, near_x_.data(), near_y_.data(), near_z_.data(), near_margin_.data(), near_.size(),
+                                              scratch_.data(), hits_.data());
+    const double needed = static_cast<double>(found.limit) + largest_margin_;
+    if (needed > reach_ && near_.size() < seeds_.size()) {
+      needed_ = near_.size() < 2 ? 2 * reach_ + grid_.cell() : needed;
+      return false;
     }
-    const std::size_t count = seed_.size(), capacity = (count + 7) / 8 * 8;
-    x_.resize(capacity), y_.resize(capacity), z_.resize(capacity);
-    const std::size_t kept = keep_near_seeds(box, static_cast<float>(margin_), x_.data(), y_.data(), z_.data(), seed_.data(), count);
+    const std::size_t count = found.count, capacity = (count + 7) / 8 * 8;
+    for (auto* array : {&x_, &y_, &z_, &margin_}) array->resize(capacity);
+    seed_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t hit = hits_[i];
+      const Vec3 offset = seeds_[near_[hit]] - block_center;
+      x_[i] = static_cast<float>(offset.x), y_[i] = static_cast<float>(offset.y), z_[i] = static_cast<float>(offset.z);
+      margin_[i] = near_margin_[hit], seed_[i] = near_[hit];
+    }
+    const std::size_t kept = keep_near_seeds(box, margin_.data(), x_.data(), y_.data(), z_.data(), seed_.data(), count);
     std::sort(seed_.begin(), seed_.begin() + static_cast<std::ptrdiff_t>(kept));  // ties go to the lower index
     list.insert(list.end(), seed_.begin(), seed_.begin() + static_cast<std::ptrdiff_t>(kept));
     return true;
@@ -115,10 +119,11 @@ class ChunkSeeds {
  private:
   const SeedGrid& grid_;
   std::span<const Vec3> seeds_;
-  double margin_, reach_ = 0, needed_ = 0;
-  std::vector<std::uint32_t> near_, seed_;
+  std::span<const float> margins_;
+  double largest_margin_, reach_ = 0, needed_ = 0;
+  std::vector<std::uint32_t> near_, hits_, seed_;
   Vec3 origin_;
-  std::vector<float> near_x_, near_y_, near_z_, distance_, x_, y_, z_;
+  std::vector<float> near_x_, near_y_, near_z_, near_margin_, scratch_, x_, y_, z_, margin_;
 };
 
 }  // namespace
@@ -145,20 +150,37 @@ CandidateLists::CandidateLists(const SampleSet& samples, const Run& run)
       offsets_(samples.blocks.size()),
       counts_(samples.blocks.size()) {}
 
-void CandidateLists::update(std::span<const Vec3> seeds, double margin, const Run& run) {
-  if (seeds_at_build_.size() == seeds.size()) {
-    double largest_move = 0;
-    for (std::size_t i = 0; i < seeds.size(); ++i)
-      largest_move = std::max(largest_move, squared_norm(seeds[i] - seeds_at_build_[i]));
-    if (largest_move <= margin_ * margin_) return;
+bool CandidateLists::still_valid(std::span<const Vec3> seeds) const {
+  if (seeds_at_build_.size() != seeds.size()) return false;
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    if (squared_norm(seeds[i] - seeds_at_build_[i]) > static_cast<double>(margins_[i]) * margins_[i]) return false;
+  return true;
+}
+
+void CandidateLists::set_margins(std::span<const Vec3> seeds) {
+  const double spacing = std::sqrt(samples_.total_area / static_cast<double>(seeds.size()));
+  const bool moved = last_seeds_.size() == seeds.size();
+  margins_.resize(seeds.size());
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    const double step = moved ? 3 * norm(seeds[i] - last_seeds_[i]) : 0;
+    margins_[i] = static_cast<float>(std::clamp(step, 0.05 * spacing, 0.5 * spacing));
   }
+}
+
+void CandidateLists::update(std::span<const Vec3> seeds, const Run& run) {
+  if (still_valid(seeds)) {
+    last_seeds_.assign(seeds.begin(), seeds.end());
+    return;
+  }
+  set_margins(seeds);
   seeds_at_build_.assign(seeds.begin(), seeds.end());
-  margin_ = margin;
+  last_seeds_ = seeds_at_build_;
+  const float largest_margin = *std::max_element(margins_.begin(), margins_.end());
   const SeedGrid grid(seeds, samples_.total_area);
   const double spacing = std::sqrt(samples_.total_area / static_cast<double>(seeds.size()));
   parallel_tasks(run, lists_.size(), [&](std::size_t c) {
     const std::size_t first = c * chunk, last = std::min((c + 1) * chunk, boxes_.size());
-    ChunkSeeds near(grid, seeds, margin);
+    ChunkSeeds near(grid, seeds, margins_, largest_margin);
     Box all;
     double radius = 0;
     for (std::size_t b = first; b < last; ++b) {
@@ -167,7 +189,7 @@ void CandidateLists::update(std::span<const Vec3> seeds, double margin, const Ru
       all.add(samples_.block_center(samples_.blocks[b]) + Vec3{box.center[0], box.center[1], box.center[2]});
       radius = std::max(radius, norm(half));
     }
-    near.collect(all, 1.2 * spacing + 2 * radius + 4 * margin);
+    near.collect(all, 1.2 * spacing + 2 * radius + 2 * static_cast<double>(largest_margin));
     lists_[c].clear();
     for (std::size_t b = first; b < last; ++b) {
       const std::size_t before = lists_[c].size();

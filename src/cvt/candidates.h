@@ -15,14 +15,14 @@ std::vector<BlockBox> block_boxes(const SampleSet& samples, const Run& run);
 
 /// Candidate lists, kept while seeds move little.
 ///
-/// A list stays complete as long as no seed has moved by more than the margin it was made with, so most evaluations of an
-/// optimization pay nothing for the search.
+/// A list stays complete as long as no seed has moved by more than its margin, a few of its last steps: most evaluations of
+/// an optimization pay nothing for the search.
 class CandidateLists {
  public:
   CandidateLists(const SampleSet& samples, const Run& run);
 
-  /// Makes the lists valid for `seeds`. @param margin  how far seeds may move before the lists are made again, model units
-  void update(std::span<const Vec3> seeds, double margin, const Run& run);
+  /// Makes the lists valid for `seeds`.
+  void update(std::span<const Vec3> seeds, const Run& run);
 
   /// Seeds of block b in ascending order, never empty; `nearest_two` are guaranteed to be among them.
   std::span<const std::uint32_t> of_block(std::size_t b) const {
@@ -36,8 +36,11 @@ class CandidateLists {
   std::vector<BlockBox> boxes_;
   std::vector<std::vector<std::uint32_t>> lists_;
   std::vector<std::uint32_t> offsets_, counts_;
-  std::vector<Vec3> seeds_at_build_;
-  double margin_ = 0;
+  std::vector<Vec3> seeds_at_build_, last_seeds_;
+  std::vector<float> margins_;
+
+  bool still_valid(std::span<const Vec3> seeds) const;
+  void set_margins(std::span<const Vec3> seeds);
 };
 
 }  // namespace evenmesh

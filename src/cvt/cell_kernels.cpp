@@ -131,7 +131,7 @@ double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const Bloc
   return sum_lanes(d, energy);
 }
 
-std::size_t KeepNearSeeds(const BlockBox& box, float margin, float* x, float* y, float* z, std::uint32_t* seed, std::size_t count) {
+std::size_t KeepNearSeeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed, std::size_t count) {
   constexpr std::size_t judges = 4;
   if (count <= 2) return count;
   const D d;
@@ -152,10 +152,9 @@ std::size_t KeepNearSeeds(const BlockBox& box, float margin, float* x, float* y,
     judge[at] = i;
     judge_count = judge_count < judges ? judge_count + 1 : judges;
   }
-  // Moves change each distance by up to the margin, so the difference of their squares by 2 · margin · (their sum).
+  // Moves change each distance by up to its margin, so the difference of their squares by the margins' sum times their own.
   const float *half = box.half, diameter = 2 * __builtin_sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
   const V hx = hn::Set(d, 2 * half[0]), hy = hn::Set(d, 2 * half[1]), hz = hn::Set(d, 2 * half[2]);
-  const V give = hn::Set(d, 2 * margin);
   for (std::size_t j = 0; j < judge_count; ++j) {
     const std::size_t q = judge[j];
     const V jx = hn::Set(d, x[q]), jy = hn::Set(d, y[q]), jz = hn::Set(d, z[q]), jd = hn::Set(d, distance2[q]);
@@ -165,7 +164,10 @@ std::size_t KeepNearSeeds(const BlockBox& box, float margin, float* x, float* y,
                               hn::Mul(hn::AbsDiff(hn::LoadU(d, z + i), jz), hz));
       const V own = hn::Load(d, distance2 + i);
       V slack = hn::Mul(hn::Add(own, jd), hn::Set(d, 1e-5f));
-      if (margin > 0) slack = hn::Add(slack, hn::Mul(give, hn::Add(hn::Sqrt(own), reach)));
+      if (margin != nullptr) {
+        const V give = hn::Add(hn::LoadU(d, margin + i), hn::Set(d, margin[q]));
+        slack = hn::Add(slack, hn::Mul(give, hn::Add(hn::Sqrt(own), reach)));
+      }
       const V farther = hn::Sub(hn::Sub(own, jd), hn::Add(swing, slack));
       const V one = hn::IfThenElseZero(hn::Gt(farther, hn::Zero(d)), hn::Set(d, 1.0f));
       hn::Store(hn::Add(hn::Load(d, dominated + i), one), d, dominated + i);
@@ -179,18 +181,20 @@ std::size_t KeepNearSeeds(const BlockBox& box, float margin, float* x, float* y,
   return kept;
 }
 
-float DistancesTo(const float* center, const float* x, const float* y, const float* z, std::size_t count, float* distance2) {
+SeedsInReach FindSeedsInReach(const float* center, float radius, const float* x, const float* y, const float* z, const float* margin,
+                              std::size_t count, float* scratch, std::uint32_t* hits) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   const V cx = hn::Set(d, center[0]), cy = hn::Set(d, center[1]), cz = hn::Set(d, center[2]), far = hn::Set(d, far_away);
-  V best = far, second = far;
+  V best = far, second = far;  // smallest distances after the moves, at the worst
   for (std::size_t i = 0; i < count; i += lanes) {
     const V dx = hn::Sub(hn::LoadU(d, x + i), cx), dy = hn::Sub(hn::LoadU(d, y + i), cy), dz = hn::Sub(hn::LoadU(d, z + i), cz);
-    V d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-    if (count - i < lanes) d2 = hn::IfThenElse(hn::FirstN(d, count - i), d2, far);
-    hn::StoreU(d2, d, distance2 + i);
-    second = hn::Min(second, hn::Max(best, d2));
-    best = hn::Min(best, d2);
+    V distance = hn::Sqrt(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)));
+    if (count - i < lanes) distance = hn::IfThenElse(hn::FirstN(d, count - i), distance, far);
+    const V m = hn::LoadU(d, margin + i), worst = hn::Add(distance, m);
+    hn::StoreU(hn::Sub(distance, m), d, scratch + i);
+    second = hn::Min(second, hn::Max(best, worst));
+    best = hn::Min(best, worst);
   }
   HWY_ALIGN float lane[16];
   hn::Store(best, d, lane);
@@ -200,7 +204,17 @@ float DistancesTo(const float* center, const float* x, const float* y, const flo
     next = lane[l] < least ? least : lane[l] < next ? lane[l] : next;
     least = lane[l] < least ? lane[l] : least;
   }
-  return next;
+  SeedsInReach found{0, next < 0.5f * far_away ? next * 1.0001f + 2 * radius : far_away};
+  const V limit = hn::Set(d, found.limit);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, hn::Le(hn::LoadU(d, scratch + i), limit), bytes);
+    for (unsigned bits = bytes[0]; bits != 0; bits &= bits - 1) {
+      const std::size_t at = i + static_cast<std::size_t>(__builtin_ctz(bits));
+      if (at < count) hits[found.count++] = static_cast<std::uint32_t>(at);
+    }
+  }
+  return found;
 }
 
 void NearestInBlock(const BlockView& b, std::uint32_t* nearest) {
@@ -250,7 +264,7 @@ HWY_AFTER_NAMESPACE();
 namespace evenmesh {
 
 HWY_EXPORT(EvaluateBlock);
-HWY_EXPORT(DistancesTo);
+HWY_EXPORT(FindSeedsInReach);
 HWY_EXPORT(KeepNearSeeds);
 HWY_EXPORT(NearestInBlock);
 HWY_EXPORT(NearestPairInBlock);
@@ -258,12 +272,14 @@ HWY_EXPORT(NearestPairInBlock);
 double evaluate_block(const BlockView& block, const BlockScratch& scratch, const BlockSums& sums) {
   return HWY_DYNAMIC_DISPATCH(EvaluateBlock)(block, scratch, sums);
 }
-std::size_t keep_near_seeds(const BlockBox& box, float margin, float* x, float* y, float* z, std::uint32_t* seed, std::size_t count) {
+std::size_t keep_near_seeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed,
+                            std::size_t count) {
   if (count > 256) return count;  // a crowd of seeds in one place: all of them are tried
   return HWY_DYNAMIC_DISPATCH(KeepNearSeeds)(box, margin, x, y, z, seed, count);
 }
-float distances_to(const float center[3], const float* x, const float* y, const float* z, std::size_t count, float* distance2) {
-  return HWY_DYNAMIC_DISPATCH(DistancesTo)(center, x, y, z, count, distance2);
+SeedsInReach seeds_in_reach(const float center[3], float radius, const float* x, const float* y, const float* z, const float* margin,
+                            std::size_t count, float* scratch, std::uint32_t* hits) {
+  return HWY_DYNAMIC_DISPATCH(FindSeedsInReach)(center, radius, x, y, z, margin, count, scratch, hits);
 }
 void nearest_in_block(const BlockView& block, std::uint32_t* nearest) {
   HWY_DYNAMIC_DISPATCH(NearestInBlock)(block, nearest);

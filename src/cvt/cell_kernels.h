@@ -27,14 +27,20 @@ struct BlockBox {
   float center[3], half[3];
 };
 
-/// Leaves out the seeds that cannot be among the two nearest of any point of the box, even when every seed moves by `margin`:
-/// those for which two others are nearer everywhere in it. Coordinates relative to the block's centre, arrays of a capacity
+/// Leaves out the seeds that cannot be among the two nearest of any point of the box, even when every seed moves by its
+/// margin (null: none moves): those for which two others are nearer everywhere in it. Coordinates relative to the block's centre, arrays of a capacity
 /// rounded up to eight; keeps the order. Returns how many are left.
-std::size_t keep_near_seeds(const BlockBox& box, float margin, float* x, float* y, float* z, std::uint32_t* seed, std::size_t count);
+std::size_t keep_near_seeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed,
+                            std::size_t count);
 
-/// Squared distances of points from a centre; returns the second smallest (infinite with fewer than two points).
-/// Arrays readable, and `distance2` writable, up to a multiple of eight.
-float distances_to(const float center[3], const float* x, const float* y, const float* z, std::size_t count, float* distance2);
+/// Seeds that may come among the two nearest of a point within `radius` of the centre when each moves by its margin.
+struct SeedsInReach {
+  std::size_t count = 0;   ///< their positions are in `hits`, ascending
+  float limit = 0;         ///< a seed that is farther than this plus its margin cannot; huge with fewer than two seeds
+};
+/// Arrays readable, and `scratch` writable, up to a multiple of eight.
+SeedsInReach seeds_in_reach(const float center[3], float radius, const float* x, const float* y, const float* z, const float* margin,
+                            std::size_t count, float* scratch, std::uint32_t* hits);
 
 /// Per candidate seed: Σ w, Σ w·(x − s).
 struct BlockSums {

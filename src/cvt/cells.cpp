@@ -19,8 +19,8 @@ constexpr double footprint_radius = 0.7;
 /// Rays that graze the surface have long footprints and little weight; the radius does not grow below this |n_a|.
 constexpr double least_slope = 0.25;
 
-/// How far seeds may move before the candidates are searched anew, in seed spacings.
-constexpr double candidate_margin = 0.35;
+/// So many candidates are tried as they are; more are sorted out first.
+constexpr std::size_t few_candidates = 8;
 
 /// Seeds of one block in single precision, and its sums.
 struct Workspace {
@@ -61,12 +61,6 @@ struct CellEvaluator::State {
     block_energy.resize(s.blocks.size());
   }
 
-  /// The margin costs a few more candidates to sort out per block; without it every evaluation would search anew.
-  void update_lists(std::span<const Vec3> seeds) {
-    const double spacing = std::sqrt(samples.total_area / static_cast<double>(seeds.size()));
-    lists.update(seeds, candidate_margin * spacing, run);
-  }
-
   /// Calls work(block index, view, candidates, workspace) for every block, in parallel.
   template <typename Work>
   void for_blocks(std::span<const Vec3> seeds, const Work& work) {
@@ -85,7 +79,8 @@ struct CellEvaluator::State {
           const Vec3 offset = seeds[listed[c]] - center;
           sx[c] = static_cast<float>(offset.x), sy[c] = static_cast<float>(offset.y), sz[c] = static_cast<float>(offset.z);
         }
-        const std::size_t n = keep_near_seeds(lists.box(b), 0, sx, sy, sz, workspace->candidates.data(), listed.size());
+        std::size_t n = listed.size();
+        if (n > few_candidates) n = keep_near_seeds(lists.box(b), nullptr, sx, sy, sz, workspace->candidates.data(), n);
         const std::span<const std::uint32_t> candidates(workspace->candidates.data(), n);
         const std::size_t at = block.begin;
         const BlockView view{.x = samples.x.data() + at,
@@ -111,7 +106,7 @@ const SampleSet& CellEvaluator::samples() const { return state_->samples; }
 
 void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
   State& state = *state_;
-  state.update_lists(seeds);
+  state.lists.update(seeds, state.run);
   const double area = state.samples.total_area;
   // Masses add up to `area`, moments to less than area × extent: 2^61 leaves room for rounding.
   const Grid& grid = state.samples.grid;
@@ -153,7 +148,7 @@ void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
 
 void CellEvaluator::nearest(std::span<const Vec3> seeds, std::vector<std::uint32_t>& labels) {
   State& state = *state_;
-  state.update_lists(seeds);
+  state.lists.update(seeds, state.run);
   labels.resize(state.samples.size());
   state.for_blocks(seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace&) {
     std::uint32_t* out = labels.data() + state.samples.blocks[b].begin;
@@ -164,7 +159,7 @@ void CellEvaluator::nearest(std::span<const Vec3> seeds, std::vector<std::uint32
 
 void CellEvaluator::nearest_pairs(std::span<const Vec3> seeds, std::vector<NearestPair>& pairs) {
   State& state = *state_;
-  state.update_lists(seeds);
+  state.lists.update(seeds, state.run);
   pairs.resize(state.samples.size());
   state.for_blocks(seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {
     nearest_pair_in_block(view, work.first.data(), work.second.data(), work.distance.data());

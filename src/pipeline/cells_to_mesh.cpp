@@ -17,6 +17,8 @@ namespace {
 constexpr int count_rounds = 3;      ///< attempts to meet the vertex count
 constexpr int seed_rounds = 12;      ///< attempts to make every cell a disk with more seeds
 constexpr int topology_rounds = 40;  ///< attempts altogether
+constexpr int trim_rounds = 5;       ///< attempts to meet the vertex count in the end
+constexpr int trim_seed_rounds = 3;  ///< after each of them
 constexpr std::size_t settling_evaluations = 5;
 
 BalanceOptions balance_options(const MeshOptions& options) {
@@ -27,19 +29,9 @@ BalanceOptions balance_options(const MeshOptions& options) {
   balance.lloyd = options.optimizer == Optimizer::lloyd;
   balance.tolerance = options.tolerance;
   balance.seed = options.seed;
-  const bool one_level = options.start != Start::coarse_to_fine;
-  switch (options.quality) {
-    case Quality::fast:
-      balance.evaluations = one_level ? 40 : 8, balance.coarse_evaluations = 16, balance.coarsest_evaluations = 30;
-      break;
-    case Quality::normal:
-      balance.evaluations = one_level ? 100 : 16;
-      break;
-    case Quality::high:
-      balance.evaluations = one_level ? 300 : 80, balance.coarse_evaluations = 100, balance.coarsest_evaluations = 100, balance.annealing_rounds = 12;
-      break;
-  }
-  if (options.iterations) balance.evaluations = balance.coarse_evaluations = balance.coarsest_evaluations = *options.iterations;
+  balance.effort = options.quality == Quality::fast ? 0.5 : options.quality == Quality::high ? 3 : 1;
+  balance.annealing_rounds = options.quality == Quality::high ? 12 : 0;
+  balance.evaluations = options.iterations;
   return balance;
 }
 
@@ -71,9 +63,9 @@ class Cells {
     });
   }
 
-  void settle() {
+  void settle(std::size_t effort = 1) {
     stages_.stage("balance", 0, [&] {
-      const auto result = optimize(*evaluator_, seeds_, {options_.optimizer == Optimizer::lloyd, settling_evaluations, options_.tolerance}, run_);
+      const auto result = optimize(*evaluator_, seeds_, {options_.optimizer == Optimizer::lloyd, effort * settling_evaluations, options_.tolerance}, run_);
       report_.energies.insert(report_.energies.end(), result.ratios.begin(), result.ratios.end());
     });
   }
@@ -195,24 +187,45 @@ class Cells {
     return static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
   }
 
-  /// A few vertices too many or too few are corrected where the topology can do without them.
+  /// Vertices too many or too few are corrected where the topology can do without them: among cells of common size.
   void trim_count() {
     if (needs_seeds()) return;
-    for (int attempt = 0; attempt < count_rounds; ++attempt) {
-      const auto made = static_cast<std::int64_t>(vertices()), excess = made - static_cast<std::int64_t>(count_);
+    for (int attempt = 0; attempt < trim_rounds; ++attempt) {
+      const auto excess = static_cast<std::int64_t>(vertices()) - static_cast<std::int64_t>(count_);
       if (std::abs(excess) * 1000 <= static_cast<std::int64_t>(count_)) return;
-      const auto change = std::max<std::int64_t>(1, std::abs(excess) >> attempt) * (excess > 0 ? 1 : -1);
-      const auto given = static_cast<std::int64_t>(seeds_.size() - complex_.pieces.size()), target = given - change;
-      if (target < 4) return;
       auto seeds = seeds_;
       auto labels = labels_;
       auto complex = complex_;
-      forget_pieces();
-      adjust_and_settle(static_cast<std::size_t>(target));
+      const auto change = std::max<std::size_t>(1, static_cast<std::size_t>(std::abs(excess)) >> attempt);
+      stages_.stage("balance", 0, [&] {
+        forget_pieces();
+        if (excess > 0)
+          remove_common_cells(samples_, seeds_, labels_, change);
+        else
+          adjust_count(*evaluator_, seeds_, seeds_.size() + change, options_.seed + 13, run_);
+      });
+      settle(2);
       connect();
-      if (needs_seeds() || std::abs(static_cast<std::int64_t>(vertices()) - static_cast<std::int64_t>(count_)) >= std::abs(excess))
+      for (int round = 0; round < trim_seed_rounds && needs_seeds() && add_seeds_only(); ++round) {
+        settle();
+        connect();
+      }
+      const auto left = static_cast<std::int64_t>(vertices()) - static_cast<std::int64_t>(count_);
+      if (needs_seeds() || std::abs(left) >= std::abs(excess))
         seeds_ = std::move(seeds), labels_ = std::move(labels), complex_ = std::move(complex);
     }
+  }
+
+  /// Mends by seeds; false when balls would be needed.
+  bool add_seeds_only() {
+    auto defects = complex_.defects;
+    for (const std::uint32_t l : unconnected()) defects.push_back({l, l});
+    const double edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
+    const Mending mending = plan_mending(samples_, labels_, seeds_, defects, {}, balls_, {edge, false});
+    if (!mending.changed.empty()) return false;
+    forget_pieces();
+    seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
+    return true;
   }
 
   SampleSet& samples_;
