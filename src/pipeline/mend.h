@@ -33,4 +33,9 @@ Mending plan_mending(const SampleSet& samples, std::span<const std::uint32_t> la
 /// Moves seeds out of balls, and leaves out those that lie closer than 0.6 edges to an earlier one around changed balls.
 void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<const std::uint32_t> changed, double edge);
 
+/// Removes up to `count` seeds of cells that are not smaller than most, none next to another: their neighbours can take the place
+/// over, while small cells are where the topology needs them. Removes fewer when there is no room for so many.
+/// @param labels  cells of the seeds; labels from seeds.size() on are those of pieces
+void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std::span<const std::uint32_t> labels, std::size_t count);
+
 }  // namespace evenmesh

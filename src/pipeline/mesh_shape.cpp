@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "connect/surface_parts.h"
 #include "pipeline/cells_to_mesh.h"
 #include "pipeline/fineness.h"
 #include "refine/fit.h"
@@ -83,8 +84,17 @@ class Job {
     }
     const Box& bounds = shape_.bounds;
     const SurfaceScale scale = stages_.stage("sample", 0.02, [&] { return scout_scale(shape_, options_.resolution.value_or(0), run_); });
-    const Fineness fineness = choose_fineness(scale, bounds, options_, report_.notices);
-    samples_ = stages_.stage("sample", 0.1, [&] { return sample_shape(shape_, make_grid(bounds, fineness.resolution), run_); });
+    Fineness fineness = choose_fineness(scale, bounds, options_, report_.notices);
+    sample_at(fineness.resolution);
+    // Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
+    const double h = samples_.grid.spacing, expected = scale.area * scale.samples_per_area / (h * h);
+    const double surprise = static_cast<double>(samples_.size()) / expected;
+    if (!options_.resolution && (surprise > 2 || surprise < 0.6)) {
+      const double better = static_cast<double>(fineness.resolution) / std::sqrt(surprise);
+      fineness.resolution = std::clamp<std::size_t>(static_cast<std::size_t>(better), 24, 8192);
+      sample_at(fineness.resolution);
+    }
+    if (surprise > 1.2) drop_specks(fineness.vertices);
     report_.seeds_asked = fineness.vertices;
     report_.resolution = fineness.resolution;
     report_.spacing = samples_.grid.spacing;
@@ -93,6 +103,18 @@ class Job {
     if (samples_.disagreements > 0)
       notice(false, fmt::format("the input is not closed: inside or outside was settled by vote at {} grid points", samples_.disagreements));
     if (samples_.cut_by_bounds && !shape_.capped_by_bounds) notice(false, "the solid leaves its bounds and is closed there");
+  }
+
+  void sample_at(std::size_t resolution) {
+    samples_ = stages_.stage("sample", 0.1, [&] { return sample_shape(shape_, make_grid(shape_.bounds, resolution), run_); });
+  }
+
+  /// Thousands of pieces smaller than a cell would keep seeds busy in vain.
+  void drop_specks(std::size_t vertices) {
+    stages_.stage("sample", 0, [&] {
+      report_.dropped_components = drop_dust(samples_, samples_.total_area / static_cast<double>(vertices), run_);
+    });
+    if (samples_.size() < vertices) throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
   }
 
   static bool contains(const Box& outer, const Box& inner) { return outer.contains(inner.lo) && outer.contains(inner.hi); }
