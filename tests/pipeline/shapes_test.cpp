@@ -59,7 +59,9 @@ TEST(MeshShape, AThinPlateKeepsItsThickness) {
     EXPECT_NEAR(static_cast<double>(result.mesh.vertices.size()), static_cast<double>(vertices),
                 0.02 * static_cast<double>(vertices))
         << "cells that are split are not split again and again";
-    EXPECT_NEAR(result.report.quality.bounds.size().z, 0.01, 0.003);
+    // Triangles at the rim may be lifted by a tenth of an edge, see refine/fit.h.
+    EXPECT_GE(result.report.quality.bounds.size().z, 0.0095);
+    EXPECT_LE(result.report.quality.bounds.size().z, 0.01 + 0.2 * result.report.quality.edge_length_avg);
     EXPECT_NEAR(result.report.quality.bounds.size().x, 1, 0.04);
     EXPECT_EQ(result.report.quality.euler, 2);
     EXPECT_NEAR(result.report.quality.area, 2.04, 0.25);
