@@ -12,9 +12,9 @@ namespace evenmesh {
 namespace {
 
 constexpr double worth_fitting = 0.17;    ///< of the edge length
-constexpr double least_score = 0.92;      ///< Q ≥ 0.66, angles ≥ 35°
-constexpr double most_lift = 0.1;         ///< of the edge length
-constexpr int reaching_rounds = 3, lifting_rounds = 2;
+constexpr double least_score = 0.9;       ///< Q ≥ 0.648, angles ≥ 34.2°
+constexpr double most_lift = 0.2;         ///< of the edge length
+constexpr int reaching_rounds = 5, lifting_rounds = 4;
 constexpr std::size_t samples_per_cell = 20;
 
 /// Some samples of every vertex' cell.
@@ -69,10 +69,10 @@ class Fitter {
       const double dp = squared_norm(mesh_.vertices[p] - tip), dq = squared_norm(mesh_.vertices[q] - tip);
       return dp != dq ? dp < dq : p < q;
     });
-    movers.resize(std::min<std::size_t>(movers.size(), 3));
-    for (const double share : {1.0, 0.75, 0.5})
+    movers.resize(std::min<std::size_t>(movers.size(), 5));
+    for (const double share : {1.0, 0.75, 0.5, 0.25})
       for (const std::uint32_t mover : movers)
-        if (pull(mover, mesh_.vertices[mover] + share * (tip - mesh_.vertices[mover]))) return true;
+        if (pull(v, mover, mesh_.vertices[mover] + share * (tip - mesh_.vertices[mover]))) return true;
     return false;
   }
 
@@ -105,7 +105,7 @@ class Fitter {
     for (const std::uint32_t c : corners) mesh_.vertices[c] += step;
     bool good = true;
     for (int c = 0; c < 3; ++c) good = good && rings_.worst_score(corners[c], normals[c]) >= floor[c];
-    if (good && all_within(region, 0.9 * before)) return true;
+    if (good && is_better(v, 0.8, region, before)) return true;
     for (int c = 0; c < 3; ++c) mesh_.vertices[corners[c]] = original[c];
     return false;
   }
@@ -171,11 +171,14 @@ class Fitter {
     for (const std::uint32_t w : cells) worst = std::max(worst, deviation_[w]);
     return worst;
   }
-  /// Whether all samples of these cells lie within a squared distance; then their deviations are brought up to date.
-  bool all_within(std::span<const std::uint32_t> cells, double limit) {
+  /// Whether v's squared deviation fell to `share` of what it was and no cell's rose above `worst`; then the cells' deviations
+  /// are brought up to date.
+  bool is_better(std::uint32_t v, double share, std::span<const std::uint32_t> cells, double worst) {
+    for (const Vec3& p : cells_.of(v))
+      if (!is_within(p, rings_.triangles(v), share * deviation_[v])) return false;
     for (const std::uint32_t w : cells)
       for (const Vec3& p : cells_.of(w))
-        if (!is_within(p, rings_.triangles(w), limit)) return false;
+        if (!is_within(p, rings_.triangles(w), worst)) return false;
     for (const std::uint32_t w : cells) {
       deviation_[w] = measured_deviation(w);
       for (const std::uint32_t t : rings_.triangles(w))
@@ -185,7 +188,7 @@ class Fitter {
   }
 
   /// Puts the vertex there, lets the two rings around it give way, and keeps that if triangles stay good and the mesh comes nearer.
-  bool pull(std::uint32_t mover, const Vec3& target) {
+  bool pull(std::uint32_t v, std::uint32_t mover, const Vec3& target) {
     const auto region = two_rings(mover);
     const auto triangles = triangles_around(region);
     std::vector<Vec3> positions, normals;
@@ -205,7 +208,7 @@ class Fitter {
       const Triangle& t = mesh_.triangles[triangles[i]];
       good = rings_.score(t) >= floor && dot(rings_.normal_of(t), normals[i]) > 0;
     }
-    if (good && all_within(region, 0.8 * before)) return true;
+    if (good && is_better(v, 0.8, region, before)) return true;
     for (std::size_t i = 0; i < region.size(); ++i) mesh_.vertices[region[i]] = positions[i];
     return false;
   }

@@ -13,8 +13,8 @@ namespace evenmesh {
 
 /// Lowers the largest distances between samples and mesh. A cell's sample that lies far from the triangles around its vertex
 /// is a tip or ridge between vertices; the vertices nearby are moved towards it, along the surface, as long as their
-/// triangles stay good (Q ≥ 0.66, angles ≥ 35°). On domes so small that no triangle of this size can follow them, the
-/// triangle is lifted half way off the surface, by at most a tenth of an edge: that halves the largest deviation.
+/// triangles stay good (Q ≥ 0.648, angles ≥ 34.2°). On domes so small that no triangle of this size can follow them, the
+/// triangle is lifted half way off the surface, by at most a fifth of an edge: that halves the largest deviation.
 ///
 /// @param vertex_of_sample  vertex whose cell each sample belongs to, none (0xffffffff) for dust
 /// Guarantee: same bits for any number of threads. Cost: about 30 ns per sample, and a millisecond for every vertex moved.
