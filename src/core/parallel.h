@@ -1,8 +1,11 @@
 #pragma once
 /// The one façade for threads (oneTBB behind it).
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include <algorithm>
 
 #include <cstddef>
 
@@ -10,10 +13,12 @@
 
 namespace evenmesh {
 
-/// Runs `body()` with at most run.threads() threads; parallel_for calls inside it obey the limit.
+/// Runs `body()` with at most run.threads() threads, and no more than there are processors; parallel_for calls inside it
+/// obey the limit.
 template <typename Body>
 auto with_threads(const Run& run, Body&& body) {
-  tbb::task_arena arena(run.threads() == 0 ? tbb::task_arena::automatic : static_cast<int>(run.threads()));
+  const auto processors = static_cast<unsigned>(tbb::info::default_concurrency());
+  tbb::task_arena arena(static_cast<int>(run.threads() == 0 ? processors : std::min(run.threads(), processors)));
   return arena.execute(body);
 }
 

@@ -7,6 +7,7 @@
 
 #include <hwy/aligned_allocator.h>
 
+#include "core/sums.h"
 #include "cvt/candidates.h"
 #include "cvt/cell_kernels.h"
 
@@ -52,6 +53,7 @@ struct CellEvaluator::State {
   float footprint, least_area;
   std::size_t largest_block = 0;
   std::vector<double> block_energy;
+  double footprint_energy = 0;
   tbb::enumerable_thread_specific<FixedSums> fixed;
   tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces;
 
@@ -59,6 +61,10 @@ struct CellEvaluator::State {
         least_area(static_cast<float>(least_slope * s.grid.spacing * s.grid.spacing)) {
     for (const SampleBlock& b : s.blocks) largest_block = std::max<std::size_t>(largest_block, b.end - b.begin);
     block_energy.resize(s.blocks.size());
+    // The second moment of the footprints about their own centres, 2/5·R² each: constant, but part of F.
+    footprint_energy = ordered_sum(run, s.size(), [&](std::size_t i) {
+      return 0.4 * static_cast<double>(s.area[i]) * footprint * footprint / std::max(s.area[i], least_area);
+    });
   }
 
   /// Calls work(block index, view, candidates, workspace) for every block, in parallel.
@@ -142,7 +148,7 @@ void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
       sums.moment[i] = Vec3{double(total[1]), double(total[2]), double(total[3])} * moment_unit;
     }
   });
-  sums.energy = 0;
+  sums.energy = state.footprint_energy;
   for (const double e : state.block_energy) sums.energy += e;
 }
 
