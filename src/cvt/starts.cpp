@@ -143,6 +143,7 @@ std::size_t count_neighbour_pairs(CellEvaluator& evaluator, const std::vector<Ve
 }
 
 void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run) {
+  run.throw_if_cancelled();
   if (seeds.size() == count) return;
   const SampleSet& samples = evaluator.samples();
   std::vector<std::uint32_t> labels;
