@@ -112,14 +112,15 @@ class Balance {
   /// seeds are first made as many as will give `target`; the few that differ are added or removed on the finer level.
   void split(std::size_t target) {
     CellEvaluator& evaluator = pyramid_.for_seeds(target);  // four times as many samples as balancing needs: sees short borders
-    const auto now = static_cast<std::int64_t>(seeds_.size());
-    const auto after = now + static_cast<std::int64_t>(count_neighbour_pairs(evaluator, seeds_, run_));
+    std::vector<Vec3> middles = neighbour_middles(evaluator, seeds_, run_);
+    const auto now = static_cast<std::int64_t>(seeds_.size()), after = now + static_cast<std::int64_t>(middles.size());
     const std::int64_t change = (static_cast<std::int64_t>(target) - after) / 4;
     if (std::abs(change) * 100 > now) {
       adjust_count(evaluator, seeds_, static_cast<std::size_t>(std::max<std::int64_t>(4, now + change)), options_.seed + 2, run_);
       relax(pyramid_.for_seeds(seeds_.size()), seeds_, evaluations(false) / 3);
+      middles = neighbour_middles(evaluator, seeds_, run_);
     }
-    seeds_ = split_seeds(evaluator, seeds_, run_);
+    seeds_.insert(seeds_.end(), middles.begin(), middles.end());
     adjust_count(evaluator, seeds_, target, options_.seed + 3, run_);
   }
 

@@ -127,19 +127,15 @@ std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, 
   return seeds;
 }
 
-std::vector<Vec3> split_seeds(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run) {
+std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run) {
   const SampleSet& samples = evaluator.samples();
-  std::vector<Vec3> split = seeds;
+  std::vector<Vec3> middles;
   for (const Border& border : borders(evaluator, seeds, run)) {
     const Vec3 middle = 0.5 * (seeds[border.pair >> 32] + seeds[border.pair & 0xffffffffu]);
     const Vec3 n = unpack_normal(samples.normal[border.sample]);
-    split.push_back(middle + n * dot(n, sample_position(samples, border.block, border.sample) - middle));
+    middles.push_back(middle + n * dot(n, sample_position(samples, border.block, border.sample) - middle));
   }
-  return split;
-}
-
-std::size_t count_neighbour_pairs(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run) {
-  return borders(evaluator, seeds, run).size();
+  return middles;
 }
 
 void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run) {

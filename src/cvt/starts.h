@@ -15,13 +15,10 @@ std::vector<Vec3> random_start(const SampleSet& samples, std::size_t count, std:
 /// go first (Yuksel, Sample elimination for generating Poisson disk sample sets, CGF 2015). Cost: O(count log count).
 std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, std::uint64_t seed);
 
-/// The seeds and a new one in the middle of every pair of neighbouring cells: four times as many, and wherever the seeds lie in
-/// a hexagonal pattern the new ones continue it, so that irregular vertices do not multiply.
+/// A place on the surface in the middle of every pair of neighbouring cells. With new seeds there they are about four times as
+/// many, and wherever the seeds lie in a hexagonal pattern the new ones continue it: irregular vertices do not multiply.
 /// @param evaluator  samples, about 100 per seed or more, so that short borders between cells are seen
-std::vector<Vec3> split_seeds(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run);
-
-/// Number of pairs of neighbouring cells: what split_seeds() would add.
-std::size_t count_neighbour_pairs(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run);
+std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run);
 
 /// Adds seeds at random samples of the heaviest cells, or removes the seeds of the lightest, until there are exactly `count`.
 /// Seeds that stay keep their order; balance them afterwards.
