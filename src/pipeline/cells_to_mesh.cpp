@@ -16,8 +16,10 @@ namespace {
 
 constexpr int count_rounds = 3;      ///< attempts to meet the vertex count
 constexpr int seed_rounds = 12;      ///< attempts to make every cell a disk with more seeds
-constexpr int topology_rounds = 40;  ///< attempts altogether
-constexpr int trim_rounds = 5;       ///< attempts to meet the vertex count in the end
+constexpr int patience = 3;          ///< rounds without a fifth fewer defects until seeds are given up
+constexpr int ball_rounds = 32;      ///< those, and attempts to change the topology where it resists
+constexpr int topology_rounds = 50;  ///< attempts altogether; the last ones divide cells down to single samples
+constexpr int trim_rounds = 6;       ///< attempts to meet the vertex count in the end
 constexpr int trim_seed_rounds = 3;  ///< after each of them
 constexpr std::size_t settling_evaluations = 5;
 
@@ -107,9 +109,26 @@ class Cells {
     if (dropped == 0) return false;
     report_.dropped_components += dropped;
     if (samples_.size() < count_) throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
-    adjust_and_settle(std::max(count_, std::min(seeds_.size(), 2 * count_)));
+    refill_idle_seeds();
+    settle();
     connect();
     return true;
+  }
+
+  /// Seeds whose samples have gone start again elsewhere.
+  void refill_idle_seeds() {
+    stages_.stage("balance", 0, [&] {
+      forget_pieces();
+      const std::size_t given = std::min(seeds_.size(), count_);
+      evaluator_->nearest(seeds_, labels_);
+      std::vector<char> owns(seeds_.size(), 0);
+      for (const std::uint32_t l : labels_) owns[l] = 1;
+      std::size_t kept = 0;
+      for (std::size_t s = 0; s < seeds_.size(); ++s)
+        if (owns[s]) seeds_[kept++] = seeds_[s];
+      seeds_.resize(kept);
+      if (kept < given) adjust_count(*evaluator_, seeds_, given, options_.seed + 7, run_);
+    });
   }
 
   void adjust_and_settle(std::size_t count) {
@@ -137,27 +156,44 @@ class Cells {
 
   bool needs_seeds() const { return !complex_.defects.empty() || !unconnected().empty(); }
 
+  /// Labels with a defect, and those that got no triangle.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> defects() const {
+    auto list = complex_.defects;
+    for (const std::uint32_t l : unconnected()) list.push_back({l, l});
+    return list;
+  }
+
+  Mending plan(std::span<const Vec3> pinches, MendOptions options) {
+    return stages_.stage("connect", 0, [&] {
+      options.edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
+      options.given = seeds_.size() - complex_.pieces.size();
+      return plan_mending(samples_, labels_, seeds_, defects(), pinches, balls_, options);
+    });
+  }
+
   /// Seeds, and balls where seeds cannot help, until all cells fit together.
   void mend() {
-    const double edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
     std::vector<Vec3> pinches;
     bool dust_cleared = false, pinches_known = false;
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    int idle_rounds = 0;
     for (int round = 0; round < topology_rounds && needs_seeds(); ++round) {
+      const std::size_t found = defects().size();
+      idle_rounds = 10 * found < 8 * fewest ? 0 : idle_rounds + 1;
+      fewest = std::min(fewest, found);
       if (!pinches_known) pinches = stages_.stage("connect", 0, [&] { return find_pinches(samples_, run_); }), pinches_known = true;
-      auto defects = complex_.defects;
-      for (const std::uint32_t l : unconnected()) defects.push_back({l, l});
-      const Mending mending = stages_.stage("connect", 0, [&] {
-        return plan_mending(samples_, labels_, seeds_, defects, pinches, balls_, {edge, round >= seed_rounds});
-      });
+      const bool last_resort = round >= ball_rounds, seeds_are_idle = round >= seed_rounds || idle_rounds >= patience;
+      if (seeds_are_idle) idle_rounds = patience;
+      const Mending mending = plan(pinches, {.balls_only = seeds_are_idle, .seeds_only = last_resort});
       forget_pieces();
       seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
       report_.inserted_seeds += mending.seeds.size();
       if (!mending.changed.empty()) {
         balls_ = BallIndex(mending.balls);
-        regularize(mending.changed, edge);
+        regularize(mending.changed);
         pinches_known = false;
       }
-      settle();
+      if (!last_resort) settle();  // it would draw seeds out of the narrow places they are put into
       connect();
       if ((!dust_cleared || !mending.changed.empty()) && !unconnected().empty()) {
         dust_cleared = true;
@@ -167,14 +203,16 @@ class Cells {
   }
 
   /// Unites the changed balls with the solid.
-  void regularize(std::span<const std::uint32_t> changed, double edge) {
+  void regularize(std::span<const std::uint32_t> changed) {
     stages_.stage("regularize", 0, [&] {
       std::vector<Ball> balls;
       for (const std::uint32_t b : changed) balls.push_back(balls_.balls()[b]);
+      const double edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
+      const std::size_t given = std::min(seeds_.size(), count_);
       samples_ = unite_balls(samples_, balls, run_);
       evaluator_ = make_evaluator();
       clear_around(seeds_, balls_, changed, edge);
-      if (seeds_.size() < count_) adjust_count(*evaluator_, seeds_, count_, options_.seed + 11, run_);
+      if (seeds_.size() < given) adjust_count(*evaluator_, seeds_, given, options_.seed + 11, run_);
       ++report_.regularization_rounds;
     });
   }
@@ -190,42 +228,42 @@ class Cells {
   /// Vertices too many or too few are corrected where the topology can do without them: among cells of common size.
   void trim_count() {
     if (needs_seeds()) return;
-    for (int attempt = 0; attempt < trim_rounds; ++attempt) {
-      const auto excess = static_cast<std::int64_t>(vertices()) - static_cast<std::int64_t>(count_);
-      if (std::abs(excess) * 1000 <= static_cast<std::int64_t>(count_)) return;
+    const auto tolerance = static_cast<std::int64_t>(count_ / 1000);
+    for (int attempt = 0, failures = 0; attempt < trim_rounds; ++attempt) {
+      const std::size_t made = vertices();
+      const auto excess = static_cast<std::int64_t>(made) - static_cast<std::int64_t>(count_);
+      if (std::abs(excess) <= tolerance) return;
       auto seeds = seeds_;
       auto labels = labels_;
       auto complex = complex_;
-      const auto change = std::max<std::size_t>(1, static_cast<std::size_t>(std::abs(excess)) >> attempt);
-      stages_.stage("balance", 0, [&] {
-        forget_pieces();
-        if (excess > 0)
-          remove_common_cells(samples_, seeds_, labels_, change);
-        else
-          adjust_count(*evaluator_, seeds_, seeds_.size() + change, options_.seed + 13, run_);
-      });
-      settle(2);
-      connect();
-      for (int round = 0; round < trim_seed_rounds && needs_seeds() && add_seeds_only(); ++round) {
-        settle();
-        connect();
-      }
+      forget_pieces();
+      const std::size_t change = static_cast<std::size_t>(std::abs(excess)) * seeds_.size() / made >> failures;
+      change_count(excess > 0, std::max<std::size_t>(1, change));
       const auto left = static_cast<std::int64_t>(vertices()) - static_cast<std::int64_t>(count_);
-      if (needs_seeds() || std::abs(left) >= std::abs(excess))
-        seeds_ = std::move(seeds), labels_ = std::move(labels), complex_ = std::move(complex);
+      if (!needs_seeds() && std::abs(left) < std::abs(excess)) continue;
+      seeds_ = std::move(seeds), labels_ = std::move(labels), complex_ = std::move(complex);
+      ++failures;
     }
   }
 
-  /// Mends by seeds; false when balls would be needed.
-  bool add_seeds_only() {
-    auto defects = complex_.defects;
-    for (const std::uint32_t l : unconnected()) defects.push_back({l, l});
-    const double edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
-    const Mending mending = plan_mending(samples_, labels_, seeds_, defects, {}, balls_, {edge, false});
-    if (!mending.changed.empty()) return false;
-    forget_pieces();
-    seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
-    return true;
+  /// Fewer seeds or more, and what these need to fit together; balls are not among that.
+  void change_count(bool fewer, std::size_t change) {
+    stages_.stage("balance", 0, [&] {
+      if (fewer)
+        remove_common_cells(samples_, seeds_, labels_, change);
+      else
+        adjust_count(*evaluator_, seeds_, seeds_.size() + change, options_.seed + 13, run_);
+    });
+    settle(2);
+    connect();
+    for (int round = 0; round < trim_seed_rounds && needs_seeds(); ++round) {
+      const Mending mending = plan({}, {});
+      if (!mending.changed.empty()) return;
+      forget_pieces();
+      seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
+      settle();
+      connect();
+    }
   }
 
   SampleSet& samples_;

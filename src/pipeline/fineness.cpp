@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "connect/surface_parts.h"
 #include "core/parallel.h"
 #include "sample/sample.h"
 
@@ -15,6 +16,7 @@ namespace {
 constexpr double wanted_alpha = 100, least_alpha = 50;
 constexpr std::size_t most_cells = 8192;
 constexpr std::size_t scouting_cells = 96;
+constexpr std::size_t most_specks = 16;      ///< of a surface that is not taken for a fractal
 constexpr double least_cells_across = 1.2;  ///< thinner parts may lie between the grid points
 
 struct Pairs {
@@ -79,13 +81,24 @@ SurfaceScale measure_scale(const SampleSet& coarse, Run& run) {
   return scale;
 }
 
+namespace {
+
+std::size_t count_specks(const SampleSet& samples, Run& run) {
+  const double speck = 8 * samples.grid.spacing * samples.grid.spacing;
+  const auto parts = surface_parts(samples, run);
+  return static_cast<std::size_t>(std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < speck; }));
+}
+
+}  // namespace
+
 SurfaceScale scout_scale(const Shape& shape, std::size_t finest, Run& run) {
   finest = std::max(finest, 4 * scouting_cells);
   for (std::size_t cells = scouting_cells;; cells *= 2) {
     const bool last = 2 * cells > finest;
     try {
       const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, cells), run);
-      const SurfaceScale scale = measure_scale(samples, run);
+      SurfaceScale scale = measure_scale(samples, run);
+      scale.specks = count_specks(samples, run);
       if (last || scale.thickness > least_cells_across * samples.grid.spacing) return scale;
     } catch (const UnusableInput&) {
       if (last) throw;
@@ -124,8 +137,9 @@ Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const Mes
     resolution = static_cast<double>(*options.resolution);
   } else {
     resolution = resolution_for(wanted_alpha * 1.02 * vertices);
-    // Thin parts need grid points inside, as long as that costs no more than four times the samples.
-    if (std::isfinite(scale.thickness) && scale.thickness > 0)
+    // Thin parts need grid points inside, as long as that costs no more than four times the samples. Where there is dust, thin
+    // parts are thin at every scale.
+    if (std::isfinite(scale.thickness) && scale.thickness > 0 && scale.specks <= most_specks)
       resolution = std::clamp(2.5 * longest / scale.thickness, resolution, 2 * resolution);
     resolution = std::ceil(std::max(resolution, 24.0));
   }

@@ -53,7 +53,10 @@ class Planner {
     measure(defective);
     for (const auto& [a, b] : defects) mend(a, b);
     for (std::size_t l = 0; l < asked_.size(); ++l)
-      if (asked_[l] && cells_[l].farthest > 0) mending_.seeds.push_back(cells_[l].far_sample);
+      if (asked_[l] && cells_[l].farthest > 0) {
+        mending_.seeds.push_back(cells_[l].far_sample);
+        if (l >= options_.given) mending_.seeds.push_back(seeds_[l]);
+      }
     return std::move(mending_);
   }
 
@@ -86,6 +89,10 @@ class Planner {
     const Vec3 p = cells_[a].centroid(seeds_[a]), q = cells_[b].centroid(seeds_[b]), middle = 0.5 * (p + q);
     const double size = std::sqrt(std::max(cells_[a].area, cells_[b].area));
     const double reach = std::min(options_.edge, 0.5 * norm(p - q) + 0.6 * size + 2 * samples_.grid.spacing);
+    if (options_.seeds_only) {
+      asked_[a] = asked_[b] = 1;
+      return;
+    }
     bool pinched = false;
     pinches_.near(middle, reach, [&](std::uint32_t i) { pinched = true, put_ball(pinch_points_[i]); });
     if (pinched) return;

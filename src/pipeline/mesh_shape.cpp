@@ -86,15 +86,10 @@ class Job {
     const SurfaceScale scale = stages_.stage("sample", 0.02, [&] { return scout_scale(shape_, options_.resolution.value_or(0), run_); });
     Fineness fineness = choose_fineness(scale, bounds, options_, report_.notices);
     sample_at(fineness.resolution);
-    // Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
     const double h = samples_.grid.spacing, expected = scale.area * scale.samples_per_area / (h * h);
     const double surprise = static_cast<double>(samples_.size()) / expected;
-    if (!options_.resolution && (surprise > 2 || surprise < 0.6)) {
-      const double better = static_cast<double>(fineness.resolution) / std::sqrt(surprise);
-      fineness.resolution = std::clamp<std::size_t>(static_cast<std::size_t>(better), 24, 8192);
-      sample_at(fineness.resolution);
-    }
-    if (surprise > 1.2) drop_specks(fineness.vertices);
+    if (!options_.resolution && (surprise > 2 || surprise < 0.6)) sample_again(fineness);
+    if (scale.specks > 0 || surprise > 2) drop_specks(fineness.vertices);
     report_.seeds_asked = fineness.vertices;
     report_.resolution = fineness.resolution;
     report_.spacing = samples_.grid.spacing;
@@ -107,6 +102,18 @@ class Job {
 
   void sample_at(std::size_t resolution) {
     samples_ = stages_.stage("sample", 0.1, [&] { return sample_shape(shape_, make_grid(shape_.bounds, resolution), run_); });
+  }
+
+  /// Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
+  void sample_again(Fineness& fineness) {
+    constexpr double wanted_alpha = 150;
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      const double alpha = static_cast<double>(samples_.size()) / static_cast<double>(fineness.vertices);
+      if (alpha > 0.6 * wanted_alpha && alpha < 1.4 * wanted_alpha) return;
+      const double better = static_cast<double>(fineness.resolution) * std::sqrt(wanted_alpha / alpha);
+      fineness.resolution = std::clamp<std::size_t>(static_cast<std::size_t>(better), 24, 8192);
+      sample_at(fineness.resolution);
+    }
   }
 
   /// Thousands of pieces smaller than a cell would keep seeds busy in vain.
