@@ -27,7 +27,9 @@ const Surface& surface(std::size_t count) {
   if (is_new) {
     const Shape shape = gallery_shape("octic");
     const double scouted = static_cast<double>(sample_shape(shape, make_grid(shape.bounds, 64)).size());
-    it->second.samples = sample_shape(shape, make_grid(shape.bounds, static_cast<std::size_t>(64 * std::sqrt(100.0 * static_cast<double>(count) / scouted))));
+    it->second.samples = sample_shape(
+        shape, make_grid(shape.bounds,
+                         static_cast<std::size_t>(64 * std::sqrt(100.0 * static_cast<double>(count) / scouted))));
     Run& run = Run::silent();
     CellEvaluator evaluator(it->second.samples, run);
     it->second.seeds = balance_seeds(evaluator, count, {}, run).seeds;
@@ -68,4 +70,3 @@ BENCHMARK(Nearest)->ArgsProduct(cases)->ArgNames({"seeds", "threads"})->Unit(ben
 BENCHMARK(Evaluate)->ArgsProduct(cases)->ArgNames({"seeds", "threads"})->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
-

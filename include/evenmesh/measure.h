@@ -17,21 +17,22 @@ struct MeshQuality {
   std::size_t vertices = 0;  ///< vertices used by a triangle
   std::size_t unused_vertices = 0;
   std::size_t faces = 0;
-  double q_min = 0, q_avg = 0;        ///< Q(t) = 6·area / (√3 · half perimeter · longest edge), 1 = equilateral
-  double theta_min = 0, theta_avg = 0; ///< smallest, and mean of, the triangles' smallest angles
-  double theta_max = 0;               ///< largest angle
-  double below_30_ratio = 0;          ///< share of triangles whose smallest angle is below 30°
-  double irregular_ratio = 0;         ///< share of interior vertices whose valence is not 6
+  double q_min = 0, q_avg = 0;          ///< Q(t) = 6·area / (√3 · half perimeter · longest edge), 1 = equilateral
+  double theta_min = 0, theta_avg = 0;  ///< smallest, and mean of, the triangles' smallest angles
+  double theta_max = 0;                 ///< largest angle
+  double below_30_ratio = 0;            ///< share of triangles whose smallest angle is below 30°
+  double irregular_ratio = 0;           ///< share of interior vertices whose valence is not 6
   std::size_t max_valence = 0;
   double edge_length_avg = 0, edge_length_cv = 0;  ///< mean, and standard deviation / mean
-  double area = 0, volume = 0;        ///< volume is signed: positive when oriented outward
-  std::size_t boundary_edges = 0;     ///< edges of one triangle
-  std::size_t non_manifold_edges = 0; ///< edges of three or more triangles
-  std::size_t non_manifold_vertices = 0;  ///< vertices whose triangles form several fans, or that lie on a non-manifold edge
-  std::size_t inconsistent_edges = 0; ///< edges whose two triangles are oriented against each other
-  std::size_t degenerate_faces = 0;   ///< triangles with a repeated vertex or collinear corners (exact)
-  std::size_t components = 0;         ///< connected over edges
-  std::int64_t euler = 0;             ///< vertices − edges + faces
+  double area = 0, volume = 0;                     ///< volume is signed: positive when oriented outward
+  std::size_t boundary_edges = 0;                  ///< edges of one triangle
+  std::size_t non_manifold_edges = 0;              ///< edges of three or more triangles
+  std::size_t non_manifold_vertices =
+      0;  ///< vertices whose triangles form several fans, or that lie on a non-manifold edge
+  std::size_t inconsistent_edges = 0;  ///< edges whose two triangles are oriented against each other
+  std::size_t degenerate_faces = 0;    ///< triangles with a repeated vertex or collinear corners (exact)
+  std::size_t components = 0;          ///< connected over edges
+  std::int64_t euler = 0;              ///< vertices − edges + faces
   Box bounds;
   bool closed() const { return boundary_edges == 0 && faces > 0; }
   bool two_manifold() const { return non_manifold_edges == 0 && non_manifold_vertices == 0; }
@@ -53,7 +54,8 @@ Histogram histogram_of_angles(const Mesh& mesh, int bins);   ///< all angles, [0
 Histogram histogram_of_quality(const Mesh& mesh, int bins);  ///< Q of every triangle, [0, 1]
 
 /// Pairs of triangles that intersect where they share no vertex or edge; pairs sharing an edge count when they
-/// are coplanar and folded onto each other, pairs sharing a vertex when they meet beyond it. Degenerate triangles are left out.
+/// are coplanar and folded onto each other, pairs sharing a vertex when they meet beyond it. Degenerate triangles are
+/// left out.
 ///
 /// Guarantee: exact on the double coordinates given. Returns each pair once, smaller index first, sorted.
 /// Cost: near-linear for meshes without many overlaps; 120,000 faces about 0.2 s on one core.
@@ -61,11 +63,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(const Me
 
 /// Distances between two meshes, sampled: every vertex and `samples` points spread by area on each side.
 struct MeshDistance {
-  double a_to_b_max = 0, b_to_a_max = 0;   ///< one-sided Hausdorff, model units
-  double a_to_b_rms = 0, b_to_a_rms = 0;   ///< root of the mean squared distance over the area samples
+  double a_to_b_max = 0, b_to_a_max = 0;  ///< one-sided Hausdorff, model units
+  double a_to_b_rms = 0, b_to_a_rms = 0;  ///< root of the mean squared distance over the area samples
   double a_to_b_mean = 0, b_to_a_mean = 0;
-  double normal_deviation_avg = 0;         ///< mean angle in degrees between the normals at a's samples and their closest points on b
-  double reference_diagonal = 0;           ///< bounding-box diagonal of b
+  double normal_deviation_avg =
+      0;  ///< mean angle in degrees between the normals at a's samples and their closest points on b
+  double reference_diagonal = 0;  ///< bounding-box diagonal of b
   double hausdorff() const { return std::max(a_to_b_max, b_to_a_max); }
 };
 struct CompareOptions {

@@ -23,17 +23,19 @@ enum class Placement { centroid, constrained, quadric };
 /// What the mesh shall be like. Nothing in here depends on the machine.
 struct MeshOptions {
   /// How fine; at most one of the two. Neither: estimated from area, curvature and the thinnest part.
-  std::optional<std::size_t> vertices{};    ///< vertex count, [4, 1e9]; met within 0.5 % unless the topology needs more
-  std::optional<double> edge_length{};      ///< mean edge length in model units, > 0
-  std::optional<std::size_t> resolution{};  ///< samples along the longest side of the bounds, [8, 8192]; default: α ≥ 100 samples per seed
-  std::optional<Box> bounds{};              ///< replaces the shape's own; a surface cut by it is capped
-  Quality quality = Quality::normal;      ///< effort of the optimization
+  std::optional<std::size_t> vertices{};  ///< vertex count, [4, 1e9]; met within 0.5 % unless the topology needs more
+  std::optional<double> edge_length{};    ///< mean edge length in model units, > 0
+  std::optional<std::size_t>
+      resolution{};  ///< samples along the longest side of the bounds, [8, 8192]; default: α ≥ 100 samples per seed
+  std::optional<Box> bounds{};        ///< replaces the shape's own; a surface cut by it is capped
+  Quality quality = Quality::normal;  ///< effort of the optimization
   Optimizer optimizer = Optimizer::lbfgs;
   Start start = Start::coarse_to_fine;
   Placement placement = Placement::quadric;
-  std::optional<std::size_t> iterations{};  ///< evaluations of the energy per level at most, [0, 10000]; default by quality
-  double tolerance = 1e-4;                ///< stop when the mean seed moves less than this share of the seed spacing, (0, 1)
-  std::uint64_t seed = 1;                 ///< of the random numbers
+  std::optional<std::size_t>
+      iterations{};         ///< evaluations of the energy per level at most, [0, 10000]; default by quality
+  double tolerance = 1e-4;  ///< stop when the mean seed moves less than this share of the seed spacing, (0, 1)
+  std::uint64_t seed = 1;   ///< of the random numbers
 };
 
 /// A promise that could not be kept, or something the user should know.
@@ -44,23 +46,23 @@ struct Notice {
 
 /// What a run did.
 struct Report {
-  MeshQuality quality;                ///< of the mesh returned
-  std::size_t self_intersections = 0; ///< pairs of triangles
-  std::size_t seeds_asked = 0;        ///< vertex count aimed at
-  std::size_t seeds = 0;              ///< vertices returned
+  MeshQuality quality;                 ///< of the mesh returned
+  std::size_t self_intersections = 0;  ///< pairs of triangles
+  std::size_t seeds_asked = 0;         ///< vertex count aimed at
+  std::size_t seeds = 0;               ///< vertices returned
   std::size_t samples = 0;
-  double alpha = 0;                   ///< samples per seed
-  std::size_t resolution = 0;         ///< grid cells along the longest side
-  double spacing = 0;                 ///< grid spacing h, model units
-  double energy_ratio = 0;            ///< F·k/A² / (5/(18√3)); 1 = perfect hexagonal tiling
-  std::vector<double> energies;       ///< energy ratio after every evaluation, all levels in turn
+  double alpha = 0;              ///< samples per seed
+  std::size_t resolution = 0;    ///< grid cells along the longest side
+  double spacing = 0;            ///< grid spacing h, model units
+  double energy_ratio = 0;       ///< F·k/A² / (5/(18√3)); 1 = perfect hexagonal tiling
+  std::vector<double> energies;  ///< energy ratio after every evaluation, all levels in turn
   std::size_t evaluations = 0;
-  std::size_t disagreements = 0;      ///< grid points whose inside differed between ray directions, settled by vote
-  std::size_t dropped_components = 0; ///< dust: pieces of surface smaller than a cell, left out
-  std::size_t inserted_seeds = 0;     ///< added because the topology needed them
+  std::size_t disagreements = 0;       ///< grid points whose inside differed between ray directions, settled by vote
+  std::size_t dropped_components = 0;  ///< dust: pieces of surface smaller than a cell, left out
+  std::size_t inserted_seeds = 0;      ///< added because the topology needed them
   std::size_t regularization_rounds = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time per stage, in order
-  std::size_t peak_memory_bytes = 0;  ///< of the process, so far
+  std::size_t peak_memory_bytes = 0;                    ///< of the process, so far
   std::vector<Notice> notices;
 };
 
@@ -71,9 +73,8 @@ struct MeshResult {
 
 /// Samples a shape's surface, spreads seeds evenly over it (centroidal Voronoi tessellation) and connects them.
 ///
-/// Guarantee: closed, two-manifold, oriented outward, without self-intersections; what could not be kept is a notice with
-/// promise_broken. Same bytes for any number of threads.
-/// Cost: two cores take about 0.05 ms and 6 kB per vertex.
+/// Guarantee: closed, two-manifold, oriented outward, without self-intersections; what could not be kept is a notice
+/// with promise_broken. Same bytes for any number of threads. Cost: two cores take about 0.05 ms and 6 kB per vertex.
 /// @throws InvalidInput   options out of range
 /// @throws UnusableInput  no surface within the bounds
 /// @throws Cancelled      through `run`

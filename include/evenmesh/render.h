@@ -14,10 +14,11 @@ namespace evenmesh {
 struct RenderOptions {
   int width = 1200, height = 900;  ///< pixels, [16, 8192]
   bool wireframe = true;
-  bool quality_colours = false;    ///< colour triangles by Q: red (0.5 and less) over yellow to green (1); otherwise grey with irregular vertices marked
+  bool quality_colours = false;  ///< colour triangles by Q: red (0.5 and less) over yellow to green (1); otherwise grey
+                                 ///< with irregular vertices marked
   double azimuth = 30, elevation = 20;  ///< camera direction in degrees
-  char up = 'y';                   ///< 'y' or 'z'
-  int antialias = 3;               ///< samples per pixel side, [1, 8]
+  char up = 'y';                        ///< 'y' or 'z'
+  int antialias = 3;                    ///< samples per pixel side, [1, 8]
 };
 
 /// 8-bit RGB, row by row from the top.
@@ -33,7 +34,8 @@ Image beside(const std::vector<Image>& images);
 /// Bytes of a PNG file.
 std::string encode_png(const Image& image);
 
-/// One self-contained HTML page: pictures, histograms of angles and of Q, energy per evaluation, time per stage, notices.
+/// One self-contained HTML page: pictures, histograms of angles and of Q, energy per evaluation, time per stage,
+/// notices.
 std::string report_html(const MeshResult& result, const std::string& title, Run& run = Run::silent());
 
 }  // namespace evenmesh

@@ -35,7 +35,8 @@ class Run {
     if (cancelled()) throw Cancelled();
   }
 
-  /// Reports that `stage` is running and `fraction` of the whole job is done; also the point where cancel() takes effect.
+  /// Reports that `stage` is running and `fraction` of the whole job is done; also the point where cancel() takes
+  /// effect.
   void report(std::string_view stage, double fraction) {
     throw_if_cancelled();
     if (progress_) progress_(stage, fraction);

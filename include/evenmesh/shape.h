@@ -60,8 +60,8 @@ Shape gallery_shape(std::string_view name);
 
 struct GalleryEntry {
   std::string_view name, formula;
-  std::string_view topology;        ///< what is known of it, in words
-  std::optional<int> euler;         ///< Euler number of the surface, when known
+  std::string_view topology;  ///< what is known of it, in words
+  std::optional<int> euler;   ///< Euler number of the surface, when known
   bool fractal = false;
 };
 const std::vector<GalleryEntry>& gallery();

@@ -6,15 +6,14 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-
 #include <cstddef>
 
 #include "evenmesh/run.h"
 
 namespace evenmesh {
 
-/// Runs `body()` with at most run.threads() threads, and no more than there are processors; parallel_for calls inside it
-/// obey the limit.
+/// Runs `body()` with at most run.threads() threads, and no more than there are processors; parallel_for calls inside
+/// it obey the limit.
 template <typename Body>
 auto with_threads(const Run& run, Body&& body) {
   const auto processors = static_cast<unsigned>(tbb::info::default_concurrency());
@@ -22,14 +21,16 @@ auto with_threads(const Run& run, Body&& body) {
   return arena.execute(body);
 }
 
-/// Calls body(begin, end) over pieces of [0, count) of at least `grain` items, in parallel; honours cancel between pieces.
+/// Calls body(begin, end) over pieces of [0, count) of at least `grain` items, in parallel; honours cancel between
+/// pieces.
 template <typename Body>
 void parallel_for(const Run& run, std::size_t count, std::size_t grain, const Body& body) {
   if (count == 0) return;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const tbb::blocked_range<std::size_t>& range) {
-    run.throw_if_cancelled();
-    body(range.begin(), range.end());
-  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      run.throw_if_cancelled();
+                      body(range.begin(), range.end());
+                    });
 }
 
 /// Calls body(i) for every i in [0, count), each a task of its own: for few, large items.

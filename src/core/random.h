@@ -20,7 +20,9 @@ class Random {
   /// Uniform in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
   /// Uniform integer in [0, n), n > 0 (bias below n / 2^64).
-  std::uint64_t below(std::uint64_t n) { return static_cast<std::uint64_t>((static_cast<unsigned __int128>(bits()) * n) >> 64); }
+  std::uint64_t below(std::uint64_t n) {
+    return static_cast<std::uint64_t>((static_cast<unsigned __int128>(bits()) * n) >> 64);
+  }
   /// Standard normal (Box–Muller).
   double gaussian() {
     const double u = 1.0 - uniform(), v = uniform();

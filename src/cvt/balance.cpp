@@ -12,8 +12,8 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t coarsest_seeds = 300;   ///< fewer cannot follow the shape; more leave more grain boundaries
-constexpr double samples_per_seed = 80;       ///< wanted on every level
+constexpr std::size_t coarsest_seeds = 300;  ///< fewer cannot follow the shape; more leave more grain boundaries
+constexpr double samples_per_seed = 80;      ///< wanted on every level
 
 /// The sample set and thinner and thinner versions of it, each with its evaluator.
 class Pyramid {
@@ -28,7 +28,9 @@ class Pyramid {
   /// The thinnest set with enough samples for `seeds` seeds.
   CellEvaluator& for_seeds(std::size_t seeds) {
     std::size_t level = levels_.size() - 1;
-    while (level > 0 && static_cast<double>(levels_[level]->samples().size()) < samples_per_seed * static_cast<double>(seeds)) --level;
+    while (level > 0 &&
+           static_cast<double>(levels_[level]->samples().size()) < samples_per_seed * static_cast<double>(seeds))
+      --level;
     return *levels_[level];
   }
   CellEvaluator& finest() { return *levels_[0]; }
@@ -42,7 +44,11 @@ class Pyramid {
 class Balance {
  public:
   Balance(CellEvaluator& finest, std::size_t count, const BalanceOptions& options, Run& run)
-      : count_(count), options_(options), run_(run), levels_(count_levels()), pyramid_(finest, samples_per_seed * static_cast<double>(count_at(levels_)), run) {}
+      : count_(count),
+        options_(options),
+        run_(run),
+        levels_(count_levels()),
+        pyramid_(finest, samples_per_seed * static_cast<double>(count_at(levels_)), run) {}
 
   BalanceResult result() {
     start();
@@ -85,7 +91,8 @@ class Balance {
   void start() {
     const std::size_t n = count_at(levels_);
     const SampleSet& samples = pyramid_.for_seeds(n).samples();
-    seeds_ = options_.start == SeedStart::random ? random_start(samples, n, options_.seed) : blue_noise_start(samples, n, options_.seed);
+    seeds_ = options_.start == SeedStart::random ? random_start(samples, n, options_.seed)
+                                                 : blue_noise_start(samples, n, options_.seed);
   }
 
   double relax(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t evaluations) {
@@ -108,15 +115,18 @@ class Balance {
     }
   }
 
-  /// Goes to the next finer level. The number of neighbour pairs depends on the shape's genus: where it matters, the coarse
-  /// seeds are first made as many as will give `target`; the few that differ are added or removed on the finer level.
+  /// Goes to the next finer level. The number of neighbour pairs depends on the shape's genus: where it matters, the
+  /// coarse seeds are first made as many as will give `target`; the few that differ are added or removed on the finer
+  /// level.
   void split(std::size_t target) {
-    CellEvaluator& evaluator = pyramid_.for_seeds(target);  // four times as many samples as balancing needs: sees short borders
+    CellEvaluator& evaluator =
+        pyramid_.for_seeds(target);  // four times as many samples as balancing needs: sees short borders
     std::vector<Vec3> middles = neighbour_middles(evaluator, seeds_, run_);
     const auto now = static_cast<std::int64_t>(seeds_.size()), after = now + static_cast<std::int64_t>(middles.size());
     const std::int64_t change = (static_cast<std::int64_t>(target) - after) / 4;
     if (std::abs(change) * 100 > now) {
-      adjust_count(evaluator, seeds_, static_cast<std::size_t>(std::max<std::int64_t>(4, now + change)), options_.seed + 2, run_);
+      adjust_count(evaluator, seeds_, static_cast<std::size_t>(std::max<std::int64_t>(4, now + change)),
+                   options_.seed + 2, run_);
       relax(pyramid_.for_seeds(seeds_.size()), seeds_, evaluations(false) / 3);
       middles = neighbour_middles(evaluator, seeds_, run_);
     }
@@ -139,7 +149,8 @@ BalanceResult balance_seeds(CellEvaluator& evaluator, std::size_t count, const B
   if (count < 4) throw InvalidInput("a closed mesh needs at least 4 vertices: ask for more");
   const SampleSet& samples = evaluator.samples();
   if (samples.size() < count)
-    throw InvalidInput(fmt::format("{} vertices need more than {} samples: raise the resolution", count, samples.size()));
+    throw InvalidInput(
+        fmt::format("{} vertices need more than {} samples: raise the resolution", count, samples.size()));
   return Balance(evaluator, count, options, run).result();
 }
 

@@ -42,7 +42,8 @@ class SeedGrid {
     for (int k = lo[2]; k <= hi[2]; ++k)
       for (int j = lo[1]; j <= hi[1]; ++j) {
         const std::size_t row = index(0, j, k);
-        for (std::uint32_t at = start_[row + lo[0]]; at < start_[row + hi[0] + 1]; ++at) visit(order_[at], position_[at]);
+        for (std::uint32_t at = start_[row + lo[0]]; at < start_[row + hi[0] + 1]; ++at)
+          visit(order_[at], position_[at]);
       }
   }
   double cell() const { return cell_; }
@@ -93,8 +94,8 @@ class ChunkSeeds {
     const Vec3 from = center - origin_;
     const float at[3] = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
     const auto radius = static_cast<float>(norm({box.half[0], box.half[1], box.half[2]}));
-    const SeedsInReach found = seeds_in_reach(at, radius, near_x_.data(), near_y_.data(), near_z_.data(), near_margin_.data(), near_.size(),
-                                              scratch_.data(), hits_.data());
+    const SeedsInReach found = seeds_in_reach(at, radius, near_x_.data(), near_y_.data(), near_z_.data(),
+                                              near_margin_.data(), near_.size(), scratch_.data(), hits_.data());
     const double needed = static_cast<double>(found.limit) + largest_margin_;
     if (needed > reach_ && near_.size() < seeds_.size()) {
       needed_ = near_.size() < 2 ? 2 * reach_ + grid_.cell() : needed;
@@ -193,7 +194,8 @@ void CandidateLists::update(std::span<const Vec3> seeds, const Run& run) {
     lists_[c].clear();
     for (std::size_t b = first; b < last; ++b) {
       const std::size_t before = lists_[c].size();
-      while (!near.candidates(samples_.block_center(samples_.blocks[b]), boxes_[b], lists_[c])) near.collect(all, near.needed());
+      while (!near.candidates(samples_.block_center(samples_.blocks[b]), boxes_[b], lists_[c]))
+        near.collect(all, near.needed());
       offsets_[b] = static_cast<std::uint32_t>(before);
       counts_[b] = static_cast<std::uint32_t>(lists_[c].size() - before);
     }

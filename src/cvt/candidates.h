@@ -15,8 +15,8 @@ std::vector<BlockBox> block_boxes(const SampleSet& samples, const Run& run);
 
 /// Candidate lists, kept while seeds move little.
 ///
-/// A list stays complete as long as no seed has moved by more than its margin, a few of its last steps: most evaluations of
-/// an optimization pay nothing for the search.
+/// A list stays complete as long as no seed has moved by more than its margin, a few of its last steps: most
+/// evaluations of an optimization pay nothing for the search.
 class CandidateLists {
  public:
   CandidateLists(const SampleSet& samples, const Run& run);

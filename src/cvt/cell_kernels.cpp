@@ -18,8 +18,8 @@ using D = hn::CappedTag<float, 8>;
 using V = hn::Vec<D>;
 
 struct Nearest2 {
-  V first, second;                      // index in the candidate list, as a float
-  V distance_first, distance_second;    // |x − s|² − |x|²
+  V first, second;                    // index in the candidate list, as a float
+  V distance_first, distance_second;  // |x − s|² − |x|²
 };
 
 /// Two smallest of |s|² − 2 x·s over the candidates; strict comparisons keep the first on ties.
@@ -57,7 +57,8 @@ HWY_INLINE V load(D d, const float* from, std::size_t i, std::size_t end) {
 /// Values of a small table by lane: one permutation when the table fits a vector.
 class Table {
  public:
-  Table(D d, const float* values, std::size_t count) : values_(values), small_(count <= hn::Lanes(d)), lanes_(hn::LoadU(d, values)) {}
+  Table(D d, const float* values, std::size_t count)
+      : values_(values), small_(count <= hn::Lanes(d)), lanes_(hn::LoadU(d, values)) {}
   template <typename Index>
   HWY_INLINE V at(D d, Index index) const {
     return small_ ? hn::TableLookupLanes(lanes_, hn::IndicesFromVec(d, index)) : hn::GatherIndex(d, values_, index);
@@ -77,7 +78,8 @@ double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const Bloc
   const Table seed[3] = {{d, b.seed_x, b.seeds}, {d, b.seed_y, b.seeds}, {d, b.seed_z, b.seeds}};
   V energy = hn::Zero(d);
   // First pass: the two nearest seeds of each sample, and what each of them gets of its footprint. The profile of a
-  // footprint across the bisector is 3/(4R)·(1 − t²/R²), the projection of an isotropic density: F and its gradient agree.
+  // footprint across the bisector is 3/(4R)·(1 − t²/R²), the projection of an isotropic density: F and its gradient
+  // agree.
   for (std::size_t i = 0; i < b.samples; i += lanes) {
     const V p[3] = {load(d, b.x, i, b.samples), load(d, b.y, i, b.samples), load(d, b.z, i, b.samples)};
     const V w = load(d, b.area, i, b.samples);
@@ -91,10 +93,13 @@ double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const Bloc
     // q = R / |s2 − s1|, u = (distance to the bisector) / R
     const V q = hn::Div(hn::Set(d, b.footprint), hn::Sqrt(hn::Mul(hn::Max(w, hn::Set(d, b.least_area)), length2)));
     const V reach = hn::Mul(length2, q);
-    const V u = hn::Min(hn::Div(hn::Mul(hn::Set(d, 0.5f), hn::Sub(n.distance_second, n.distance_first)), reach), hn::Set(d, 1.0f));
+    const V u = hn::Min(hn::Div(hn::Mul(hn::Set(d, 0.5f), hn::Sub(n.distance_second, n.distance_first)), reach),
+                        hn::Set(d, 1.0f));
     const V u2 = hn::Mul(u, u), rest = hn::Sub(hn::Set(d, 1.0f), u2);
-    const V share = hn::Mul(hn::Set(d, 0.25f), hn::Add(hn::Sub(hn::Set(d, 2.0f), hn::Mul(hn::Set(d, 3.0f), u)), hn::Mul(u, u2)));
-    const V moment = hn::Mul(hn::Set(d, 0.1875f), hn::Mul(rest, rest));  // of the part beyond the bisector, in units of R
+    const V share =
+        hn::Mul(hn::Set(d, 0.25f), hn::Add(hn::Sub(hn::Set(d, 2.0f), hn::Mul(hn::Set(d, 3.0f), u)), hn::Mul(u, u2)));
+    const V moment =
+        hn::Mul(hn::Set(d, 0.1875f), hn::Mul(rest, rest));  // of the part beyond the bisector, in units of R
     const V w2 = hn::Mul(w, share), w1 = hn::Sub(w, w2);
     const V shift = hn::Mul(w, hn::Mul(moment, q));
     const V p2 = hn::Add(hn::Mul(p[0], p[0]), hn::Add(hn::Mul(p[1], p[1]), hn::Mul(p[2], p[2])));
@@ -117,10 +122,14 @@ double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const Bloc
     for (std::size_t i = 0; i < b.samples; i += lanes) {
       const auto is1 = hn::Eq(hn::Load(d, t[0] + i), index);
       const auto is2 = hn::Eq(hn::Load(d, t[1] + i), index);
-      mass = hn::Add(mass, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[2] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[3] + i))));
-      mx = hn::Add(mx, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[4] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[7] + i))));
-      my = hn::Add(my, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[5] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[8] + i))));
-      mz = hn::Add(mz, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[6] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[9] + i))));
+      mass = hn::Add(mass, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[2] + i)),
+                                   hn::IfThenElseZero(is2, hn::Load(d, t[3] + i))));
+      mx = hn::Add(
+          mx, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[4] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[7] + i))));
+      my = hn::Add(
+          my, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[5] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[8] + i))));
+      mz = hn::Add(
+          mz, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[6] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[9] + i))));
     }
     const float m = sum_lanes(d, mass);
     sums.mass[c] = m;
@@ -131,7 +140,8 @@ double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const Bloc
   return sum_lanes(d, energy);
 }
 
-std::size_t KeepNearSeeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed, std::size_t count) {
+std::size_t KeepNearSeeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed,
+                          std::size_t count) {
   constexpr std::size_t judges = 4;
   if (count <= 2) return count;
   const D d;
@@ -139,7 +149,8 @@ std::size_t KeepNearSeeds(const BlockBox& box, const float* margin, float* x, fl
   HWY_ALIGN float distance2[max_candidates], dominated[max_candidates];
   const V cx = hn::Set(d, box.center[0]), cy = hn::Set(d, box.center[1]), cz = hn::Set(d, box.center[2]);
   for (std::size_t i = 0; i < count; i += lanes) {
-    const V dx = hn::Sub(hn::LoadU(d, x + i), cx), dy = hn::Sub(hn::LoadU(d, y + i), cy), dz = hn::Sub(hn::LoadU(d, z + i), cz);
+    const V dx = hn::Sub(hn::LoadU(d, x + i), cx), dy = hn::Sub(hn::LoadU(d, y + i), cy),
+            dz = hn::Sub(hn::LoadU(d, z + i), cz);
     hn::Store(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), d, distance2 + i);
     hn::Store(hn::Zero(d), d, dominated + i);
   }
@@ -152,16 +163,19 @@ std::size_t KeepNearSeeds(const BlockBox& box, const float* margin, float* x, fl
     judge[at] = i;
     judge_count = judge_count < judges ? judge_count + 1 : judges;
   }
-  // Moves change each distance by up to its margin, so the difference of their squares by the margins' sum times their own.
-  const float *half = box.half, diameter = 2 * __builtin_sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
+  // Moves change each distance by up to its margin, so the difference of their squares by the margins' sum times their
+  // own.
+  const float *half = box.half,
+              diameter = 2 * __builtin_sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
   const V hx = hn::Set(d, 2 * half[0]), hy = hn::Set(d, 2 * half[1]), hz = hn::Set(d, 2 * half[2]);
   for (std::size_t j = 0; j < judge_count; ++j) {
     const std::size_t q = judge[j];
     const V jx = hn::Set(d, x[q]), jy = hn::Set(d, y[q]), jz = hn::Set(d, z[q]), jd = hn::Set(d, distance2[q]);
     const V reach = hn::Add(hn::Sqrt(jd), hn::Set(d, diameter));
     for (std::size_t i = 0; i < count; i += lanes) {
-      const V swing = hn::Add(hn::Add(hn::Mul(hn::AbsDiff(hn::LoadU(d, x + i), jx), hx), hn::Mul(hn::AbsDiff(hn::LoadU(d, y + i), jy), hy)),
-                              hn::Mul(hn::AbsDiff(hn::LoadU(d, z + i), jz), hz));
+      const V swing = hn::Add(
+          hn::Add(hn::Mul(hn::AbsDiff(hn::LoadU(d, x + i), jx), hx), hn::Mul(hn::AbsDiff(hn::LoadU(d, y + i), jy), hy)),
+          hn::Mul(hn::AbsDiff(hn::LoadU(d, z + i), jz), hz));
       const V own = hn::Load(d, distance2 + i);
       V slack = hn::Mul(hn::Add(own, jd), hn::Set(d, 1e-5f));
       if (margin != nullptr) {
@@ -181,14 +195,16 @@ std::size_t KeepNearSeeds(const BlockBox& box, const float* margin, float* x, fl
   return kept;
 }
 
-SeedsInReach FindSeedsInReach(const float* center, float radius, const float* x, const float* y, const float* z, const float* margin,
-                              std::size_t count, float* scratch, std::uint32_t* hits) {
+SeedsInReach FindSeedsInReach(const float* center, float radius, const float* x, const float* y, const float* z,
+                              const float* margin, std::size_t count, float* scratch, std::uint32_t* hits) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
-  const V cx = hn::Set(d, center[0]), cy = hn::Set(d, center[1]), cz = hn::Set(d, center[2]), far = hn::Set(d, far_away);
+  const V cx = hn::Set(d, center[0]), cy = hn::Set(d, center[1]), cz = hn::Set(d, center[2]),
+          far = hn::Set(d, far_away);
   V best = far, second = far;  // smallest distances after the moves, at the worst
   for (std::size_t i = 0; i < count; i += lanes) {
-    const V dx = hn::Sub(hn::LoadU(d, x + i), cx), dy = hn::Sub(hn::LoadU(d, y + i), cy), dz = hn::Sub(hn::LoadU(d, z + i), cz);
+    const V dx = hn::Sub(hn::LoadU(d, x + i), cx), dy = hn::Sub(hn::LoadU(d, y + i), cy),
+            dz = hn::Sub(hn::LoadU(d, z + i), cz);
     V distance = hn::Sqrt(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)));
     if (count - i < lanes) distance = hn::IfThenElse(hn::FirstN(d, count - i), distance, far);
     const V m = hn::LoadU(d, margin + i), worst = hn::Add(distance, m);
@@ -243,7 +259,8 @@ void NearestPairInBlock(const BlockView& b, std::uint32_t* first, std::uint32_t*
   const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN float index1[8], index2[8], gap[8];
   for (std::size_t i = 0; i < b.samples; i += lanes) {
-    const Nearest2 n = nearest_two(d, b, load(d, b.x, i, b.samples), load(d, b.y, i, b.samples), load(d, b.z, i, b.samples));
+    const Nearest2 n =
+        nearest_two(d, b, load(d, b.x, i, b.samples), load(d, b.y, i, b.samples), load(d, b.z, i, b.samples));
     hn::Store(n.first, d, index1);
     hn::Store(n.second, d, index2);
     hn::Store(hn::Sub(n.distance_second, n.distance_first), d, gap);
@@ -277,8 +294,8 @@ std::size_t keep_near_seeds(const BlockBox& box, const float* margin, float* x, 
   if (count > 256) return count;  // a crowd of seeds in one place: all of them are tried
   return HWY_DYNAMIC_DISPATCH(KeepNearSeeds)(box, margin, x, y, z, seed, count);
 }
-SeedsInReach seeds_in_reach(const float center[3], float radius, const float* x, const float* y, const float* z, const float* margin,
-                            std::size_t count, float* scratch, std::uint32_t* hits) {
+SeedsInReach seeds_in_reach(const float center[3], float radius, const float* x, const float* y, const float* z,
+                            const float* margin, std::size_t count, float* scratch, std::uint32_t* hits) {
   return HWY_DYNAMIC_DISPATCH(FindSeedsInReach)(center, radius, x, y, z, margin, count, scratch, hits);
 }
 void nearest_in_block(const BlockView& block, std::uint32_t* nearest) {

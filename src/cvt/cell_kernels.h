@@ -9,7 +9,7 @@ namespace evenmesh {
 /// Samples of a block and its candidate seeds, all relative to the block's centre. At least one seed.
 struct BlockView {
   const float *x, *y, *z, *area;
-  float footprint;                     ///< a sample of area w has a footprint of radius footprint / √max(w, least_area)
+  float footprint;  ///< a sample of area w has a footprint of radius footprint / √max(w, least_area)
   float least_area;
   std::size_t samples;
   const float *seed_x, *seed_y, *seed_z;  ///< readable up to a multiple of eight
@@ -28,19 +28,19 @@ struct BlockBox {
 };
 
 /// Leaves out the seeds that cannot be among the two nearest of any point of the box, even when every seed moves by its
-/// margin (null: none moves): those for which two others are nearer everywhere in it. Coordinates relative to the block's centre, arrays of a capacity
-/// rounded up to eight; keeps the order. Returns how many are left.
+/// margin (null: none moves): those for which two others are nearer everywhere in it. Coordinates relative to the
+/// block's centre, arrays of a capacity rounded up to eight; keeps the order. Returns how many are left.
 std::size_t keep_near_seeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed,
                             std::size_t count);
 
 /// Seeds that may come among the two nearest of a point within `radius` of the centre when each moves by its margin.
 struct SeedsInReach {
-  std::size_t count = 0;   ///< their positions are in `hits`, ascending
-  float limit = 0;         ///< a seed that is farther than this plus its margin cannot; huge with fewer than two seeds
+  std::size_t count = 0;  ///< their positions are in `hits`, ascending
+  float limit = 0;        ///< a seed that is farther than this plus its margin cannot; huge with fewer than two seeds
 };
 /// Arrays readable, and `scratch` writable, up to a multiple of eight.
-SeedsInReach seeds_in_reach(const float center[3], float radius, const float* x, const float* y, const float* z, const float* margin,
-                            std::size_t count, float* scratch, std::uint32_t* hits);
+SeedsInReach seeds_in_reach(const float center[3], float radius, const float* x, const float* y, const float* z,
+                            const float* margin, std::size_t count, float* scratch, std::uint32_t* hits);
 
 /// Per candidate seed: Σ w, Σ w·(x − s).
 struct BlockSums {
@@ -54,6 +54,7 @@ double evaluate_block(const BlockView& block, const BlockScratch& scratch, const
 void nearest_in_block(const BlockView& block, std::uint32_t* nearest);
 
 /// The two nearest, and the distance to their bisector (first == second, distance large, when there is one seed only).
-void nearest_pair_in_block(const BlockView& block, std::uint32_t* first, std::uint32_t* second, float* bisector_distance);
+void nearest_pair_in_block(const BlockView& block, std::uint32_t* first, std::uint32_t* second,
+                           float* bisector_distance);
 
 }  // namespace evenmesh

@@ -1,11 +1,10 @@
 #include "cvt/cells.h"
 
+#include <hwy/aligned_allocator.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <cmath>
 #include <numbers>
-
-#include <hwy/aligned_allocator.h>
 
 #include "core/sums.h"
 #include "cvt/candidates.h"
@@ -14,8 +13,8 @@
 namespace evenmesh {
 namespace {
 
-/// Radius of a footprint in units of the spacing of its axis' samples on the surface, h/√|n_a|. A square of that side has
-/// the same variance at 0.645; wider ones blur short edges of cells, narrower ones leave noise (docs/cvt.md).
+/// Radius of a footprint in units of the spacing of its axis' samples on the surface, h/√|n_a|. A square of that side
+/// has the same variance at 0.645; wider ones blur short edges of cells, narrower ones leave noise (docs/cvt.md).
 constexpr double footprint_radius = 0.7;
 /// Rays that graze the surface have long footprints and little weight; the radius does not grow below this |n_a|.
 constexpr double least_slope = 0.25;
@@ -57,7 +56,11 @@ struct CellEvaluator::State {
   tbb::enumerable_thread_specific<FixedSums> fixed;
   tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces;
 
-  State(const SampleSet& s, Run& r) : samples(s), run(r), lists(s, r), footprint(static_cast<float>(footprint_radius * s.grid.spacing * s.grid.spacing)),
+  State(const SampleSet& s, Run& r)
+      : samples(s),
+        run(r),
+        lists(s, r),
+        footprint(static_cast<float>(footprint_radius * s.grid.spacing * s.grid.spacing)),
         least_area(static_cast<float>(least_slope * s.grid.spacing * s.grid.spacing)) {
     for (const SampleBlock& b : s.blocks) largest_block = std::max<std::size_t>(largest_block, b.end - b.begin);
     block_energy.resize(s.blocks.size());
@@ -83,7 +86,8 @@ struct CellEvaluator::State {
         float *sx = workspace->seeds.data(), *sy = sx + capacity, *sz = sy + capacity;
         for (std::size_t c = 0; c < listed.size(); ++c) {
           const Vec3 offset = seeds[listed[c]] - center;
-          sx[c] = static_cast<float>(offset.x), sy[c] = static_cast<float>(offset.y), sz[c] = static_cast<float>(offset.z);
+          sx[c] = static_cast<float>(offset.x), sy[c] = static_cast<float>(offset.y),
+          sz[c] = static_cast<float>(offset.z);
         }
         std::size_t n = listed.size();
         if (n > few_candidates) n = keep_near_seeds(lists.box(b), nullptr, sx, sy, sz, workspace->candidates.data(), n);
@@ -108,7 +112,9 @@ struct CellEvaluator::State {
 
 CellEvaluator::CellEvaluator(const SampleSet& samples, Run& run) : state_(std::make_unique<State>(samples, run)) {}
 CellEvaluator::~CellEvaluator() = default;
-const SampleSet& CellEvaluator::samples() const { return state_->samples; }
+const SampleSet& CellEvaluator::samples() const {
+  return state_->samples;
+}
 
 void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
   State& state = *state_;
@@ -119,23 +125,24 @@ void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
   const double extent = grid.spacing * std::max({grid.size[0], grid.size[1], grid.size[2]});
   const double mass_unit = area * 0x1p-60, moment_unit = area * extent * 0x1p-60;
   for (FixedSums& f : state.fixed) f.cell.assign(seeds.size(), {});
-  state.for_blocks(seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {
-    auto& fixed = state.fixed.local();
-    if (fixed.cell.size() != seeds.size()) fixed.cell.assign(seeds.size(), {});
-    const std::size_t n = candidates.size();
-    work.sums.resize(4 * n);
-    const BlockSums out{work.sums.data(), work.sums.data() + n, work.sums.data() + 2 * n, work.sums.data() + 3 * n};
-    state.block_energy[b] = evaluate_block(view, work.scratch, out);
-    const double to_mass = 1 / mass_unit, to_moment = 1 / moment_unit;
-    for (std::size_t c = 0; c < n; ++c) {
-      auto& cell = fixed.cell[candidates[c]];
-      if (out.mass[c] == 0 && out.mx[c] == 0) continue;
-      cell[0] += static_cast<std::int64_t>(out.mass[c] * to_mass);
-      cell[1] += static_cast<std::int64_t>(out.mx[c] * to_moment);
-      cell[2] += static_cast<std::int64_t>(out.my[c] * to_moment);
-      cell[3] += static_cast<std::int64_t>(out.mz[c] * to_moment);
-    }
-  });
+  state.for_blocks(
+      seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {
+        auto& fixed = state.fixed.local();
+        if (fixed.cell.size() != seeds.size()) fixed.cell.assign(seeds.size(), {});
+        const std::size_t n = candidates.size();
+        work.sums.resize(4 * n);
+        const BlockSums out{work.sums.data(), work.sums.data() + n, work.sums.data() + 2 * n, work.sums.data() + 3 * n};
+        state.block_energy[b] = evaluate_block(view, work.scratch, out);
+        const double to_mass = 1 / mass_unit, to_moment = 1 / moment_unit;
+        for (std::size_t c = 0; c < n; ++c) {
+          auto& cell = fixed.cell[candidates[c]];
+          if (out.mass[c] == 0 && out.mx[c] == 0) continue;
+          cell[0] += static_cast<std::int64_t>(out.mass[c] * to_mass);
+          cell[1] += static_cast<std::int64_t>(out.mx[c] * to_moment);
+          cell[2] += static_cast<std::int64_t>(out.my[c] * to_moment);
+          cell[3] += static_cast<std::int64_t>(out.mz[c] * to_moment);
+        }
+      });
   sums.mass.assign(seeds.size(), 0);
   sums.moment.assign(seeds.size(), {});
   parallel_for(state.run, seeds.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -156,23 +163,25 @@ void CellEvaluator::nearest(std::span<const Vec3> seeds, std::vector<std::uint32
   State& state = *state_;
   state.lists.update(seeds, state.run);
   labels.resize(state.samples.size());
-  state.for_blocks(seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace&) {
-    std::uint32_t* out = labels.data() + state.samples.blocks[b].begin;
-    nearest_in_block(view, out);
-    for (std::size_t i = 0; i < view.samples; ++i) out[i] = candidates[out[i]];
-  });
+  state.for_blocks(seeds,
+                   [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace&) {
+                     std::uint32_t* out = labels.data() + state.samples.blocks[b].begin;
+                     nearest_in_block(view, out);
+                     for (std::size_t i = 0; i < view.samples; ++i) out[i] = candidates[out[i]];
+                   });
 }
 
 void CellEvaluator::nearest_pairs(std::span<const Vec3> seeds, std::vector<NearestPair>& pairs) {
   State& state = *state_;
   state.lists.update(seeds, state.run);
   pairs.resize(state.samples.size());
-  state.for_blocks(seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {
-    nearest_pair_in_block(view, work.first.data(), work.second.data(), work.distance.data());
-    NearestPair* out = pairs.data() + state.samples.blocks[b].begin;
-    for (std::size_t i = 0; i < view.samples; ++i)
-      out[i] = {candidates[work.first[i]], candidates[work.second[i]], work.distance[i]};
-  });
+  state.for_blocks(
+      seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {
+        nearest_pair_in_block(view, work.first.data(), work.second.data(), work.distance.data());
+        NearestPair* out = pairs.data() + state.samples.blocks[b].begin;
+        for (std::size_t i = 0; i < view.samples; ++i)
+          out[i] = {candidates[work.first[i]], candidates[work.second[i]], work.distance[i]};
+      });
 }
 
 double energy_ratio(double energy, std::size_t seeds, double area) {

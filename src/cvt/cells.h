@@ -13,9 +13,9 @@ namespace evenmesh {
 
 /// What one evaluation of the energy gives. Masses in squared model units.
 struct CellSums {
-  std::vector<double> mass;   ///< m_i, area of cell i
-  std::vector<Vec3> moment;   ///< Σ w (x − s_i) over cell i: the gradient of the energy is −2 · moment
-  double energy = 0;          ///< F = Σ_i Σ_{x in cell i} w |x − s_i|²
+  std::vector<double> mass;  ///< m_i, area of cell i
+  std::vector<Vec3> moment;  ///< Σ w (x − s_i) over cell i: the gradient of the energy is −2 · moment
+  double energy = 0;         ///< F = Σ_i Σ_{x in cell i} w |x − s_i|²
 };
 
 /// The two nearest seeds of a sample and how far it lies from their bisector.
@@ -26,9 +26,9 @@ struct NearestPair {
 
 /// Evaluates cells of changing seeds on one fixed set of samples.
 ///
-/// A sample is not a point but a small disc of the surface: it is cut by the bisector of its two nearest seeds, and each
-/// part counts for its own seed. With that the energy is smooth in the seeds, and agrees with its gradient wherever no
-/// third seed is as near (docs/cvt.md has the comparison with point samples, boxes and clipped polygons).
+/// A sample is not a point but a small disc of the surface: it is cut by the bisector of its two nearest seeds, and
+/// each part counts for its own seed. With that the energy is smooth in the seeds, and agrees with its gradient
+/// wherever no third seed is as near (docs/cvt.md has the comparison with point samples, boxes and clipped polygons).
 ///
 /// Guarantee: same bits for any number of threads (sums are 64-bit integers). Cost: about 5 ns per sample and core.
 /// The discrete form of [Raster2Mesh §4.2].

@@ -22,7 +22,9 @@ struct Border {
   float distance;      ///< of that sample to the middle, squared
   std::uint32_t sample, block;
   friend bool operator<(const Border& a, const Border& b) {
-    return a.pair != b.pair ? a.pair < b.pair : a.distance != b.distance ? a.distance < b.distance : a.sample < b.sample;
+    return a.pair != b.pair           ? a.pair < b.pair
+           : a.distance != b.distance ? a.distance < b.distance
+                                      : a.sample < b.sample;
   }
 };
 
@@ -43,12 +45,14 @@ std::vector<Border> borders(CellEvaluator& evaluator, const std::vector<Vec3>& s
         list.push_back({std::uint64_t{std::min(s, t)} << 32 | std::max(s, t), off, i, static_cast<std::uint32_t>(b)});
       }
     std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end(), [](const Border& x, const Border& y) { return x.pair == y.pair; }), list.end());
+    list.erase(std::unique(list.begin(), list.end(), [](const Border& x, const Border& y) { return x.pair == y.pair; }),
+               list.end());
   });
   std::vector<Border> all;
   for (const auto& list : of_chunk) all.insert(all.end(), list.begin(), list.end());
   tbb::parallel_sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end(), [](const Border& x, const Border& y) { return x.pair == y.pair; }), all.end());
+  all.erase(std::unique(all.begin(), all.end(), [](const Border& x, const Border& y) { return x.pair == y.pair; }),
+            all.end());
   return all;
 }
 
@@ -65,7 +69,8 @@ std::vector<Vec3> random_start(const SampleSet& samples, std::size_t count, std:
       passed += samples.area[i];
       while (seeds.size() < count && passed > target) {
         seeds.push_back(sample_position(samples, b, i));
-        target = (static_cast<double>(seeds.size()) + random.uniform()) * samples.total_area / static_cast<double>(count);
+        target =
+            (static_cast<double>(seeds.size()) + random.uniform()) * samples.total_area / static_cast<double>(count);
       }
     }
   while (seeds.size() < count) {
@@ -85,10 +90,13 @@ std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, 
   const double reach = 2 * radius;
   const auto cell_of = [&](const Vec3& p) {
     const Vec3 q = (p - samples.grid.origin) / reach;
-    return std::array<std::int64_t, 3>{static_cast<std::int64_t>(std::floor(q.x)), static_cast<std::int64_t>(std::floor(q.y)),
+    return std::array<std::int64_t, 3>{static_cast<std::int64_t>(std::floor(q.x)),
+                                       static_cast<std::int64_t>(std::floor(q.y)),
                                        static_cast<std::int64_t>(std::floor(q.z))};
   };
-  const auto key = [](std::int64_t i, std::int64_t j, std::int64_t k) { return (i + 1) << 42 | (j + 1) << 21 | (k + 1); };
+  const auto key = [](std::int64_t i, std::int64_t j, std::int64_t k) {
+    return (i + 1) << 42 | (j + 1) << 21 | (k + 1);
+  };
   std::unordered_map<std::int64_t, std::vector<std::uint32_t>> cells;
   for (std::size_t p = 0; p < points.size(); ++p) {
     const auto c = cell_of(points[p]);

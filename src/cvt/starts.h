@@ -11,17 +11,19 @@ namespace evenmesh {
 /// `count` samples drawn by area (with replacement on few samples). [Raster2Mesh §4.1]
 std::vector<Vec3> random_start(const SampleSet& samples, std::size_t count, std::uint64_t seed);
 
-/// `count` samples spread by elimination: from several times as many random ones those with the most crowded neighbourhood
-/// go first (Yuksel, Sample elimination for generating Poisson disk sample sets, CGF 2015). Cost: O(count log count).
+/// `count` samples spread by elimination: from several times as many random ones those with the most crowded
+/// neighbourhood go first (Yuksel, Sample elimination for generating Poisson disk sample sets, CGF 2015). Cost: O(count
+/// log count).
 std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, std::uint64_t seed);
 
-/// A place on the surface in the middle of every pair of neighbouring cells. With new seeds there they are about four times as
-/// many, and wherever the seeds lie in a hexagonal pattern the new ones continue it: irregular vertices do not multiply.
+/// A place on the surface in the middle of every pair of neighbouring cells. With new seeds there they are about four
+/// times as many, and wherever the seeds lie in a hexagonal pattern the new ones continue it: irregular vertices do not
+/// multiply.
 /// @param evaluator  samples, about 100 per seed or more, so that short borders between cells are seen
 std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run);
 
-/// Adds seeds at random samples of the heaviest cells, or removes the seeds of the lightest, until there are exactly `count`.
-/// Seeds that stay keep their order; balance them afterwards.
+/// Adds seeds at random samples of the heaviest cells, or removes the seeds of the lightest, until there are exactly
+/// `count`. Seeds that stay keep their order; balance them afterwards.
 void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run);
 
 }  // namespace evenmesh

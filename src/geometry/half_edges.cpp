@@ -3,7 +3,10 @@
 namespace evenmesh {
 
 HalfEdges::HalfEdges(std::span<const Triangle> triangles, std::size_t vertices)
-    : opposite_(3 * triangles.size(), none), outgoing_(vertices, none), start_(vertices + 1, 0), half_edges_from_(3 * triangles.size()) {
+    : opposite_(3 * triangles.size(), none),
+      outgoing_(vertices, none),
+      start_(vertices + 1, 0),
+      half_edges_from_(3 * triangles.size()) {
   for (const Triangle& t : triangles)
     for (const std::uint32_t v : t) ++start_[v + 1];
   for (std::size_t v = 0; v < vertices; ++v) start_[v + 1] += start_[v];
@@ -18,7 +21,8 @@ HalfEdges::HalfEdges(std::span<const Triangle> triangles, std::size_t vertices)
       const std::uint32_t h = half_edges_from_[at], w = target(h);
       if (w <= v) continue;  // each edge once, from its lower vertex
       std::uint32_t forward = 0, backward = 0, back = none;
-      for (std::uint32_t other = start_[v]; other < start_[v + 1]; ++other) forward += target(half_edges_from_[other]) == w;
+      for (std::uint32_t other = start_[v]; other < start_[v + 1]; ++other)
+        forward += target(half_edges_from_[other]) == w;
       for (std::uint32_t other = start_[w]; other < start_[w + 1]; ++other)
         if (target(half_edges_from_[other]) == v) ++backward, back = half_edges_from_[other];
       if (forward == 1 && backward == 1) opposite_[h] = back, opposite_[back] = h;

@@ -182,6 +182,7 @@ class Cells {
       idle_rounds = 10 * found < 8 * fewest ? 0 : idle_rounds + 1;
       fewest = std::min(fewest, found);
       if (!pinches_known) pinches = stages_.stage("connect", 0, [&] { return find_pinches(samples_, run_); }), pinches_known = true;
+      run_.log(fmt::format("mend {}: {} defects, {} seeds, {} balls, {} pinches", round, found, seeds_.size(), balls_.balls().size(), pinches.size()));
       const bool last_resort = round >= ball_rounds, seeds_are_idle = round >= seed_rounds || idle_rounds >= patience;
       if (seeds_are_idle) idle_rounds = patience;
       const Mending mending = plan(pinches, {.balls_only = seeds_are_idle, .seeds_only = last_resort});

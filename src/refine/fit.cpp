@@ -11,20 +11,23 @@
 namespace evenmesh {
 namespace {
 
-constexpr double worth_fitting = 0.17;    ///< of the edge length
-constexpr double least_score = 0.9;       ///< Q ≥ 0.648, angles ≥ 34.2°
-constexpr double most_lift = 0.2;         ///< of the edge length
+constexpr double worth_fitting = 0.17;  ///< of the edge length
+constexpr double least_score = 0.9;     ///< Q ≥ 0.648, angles ≥ 34.2°
+constexpr double most_lift = 0.2;       ///< of the edge length
 constexpr int reaching_rounds = 5, lifting_rounds = 4;
 constexpr std::size_t samples_per_cell = 20;
 
 /// Some samples of every vertex' cell.
 class CellSamples {
  public:
-  CellSamples(const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, std::size_t vertices) : start_(vertices + 1, 0) {
-    const std::size_t stride = std::max<std::size_t>(1, samples.size() / (samples_per_cell * std::max<std::size_t>(1, vertices)));
+  CellSamples(const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, std::size_t vertices)
+      : start_(vertices + 1, 0) {
+    const std::size_t stride =
+        std::max<std::size_t>(1, samples.size() / (samples_per_cell * std::max<std::size_t>(1, vertices)));
     const auto each = [&](const auto& visit) {
       for (std::size_t b = 0; b < samples.blocks.size(); ++b)
-        for (std::size_t i = (samples.blocks[b].begin + stride - 1) / stride * stride; i < samples.blocks[b].end; i += stride)
+        for (std::size_t i = (samples.blocks[b].begin + stride - 1) / stride * stride; i < samples.blocks[b].end;
+             i += stride)
           if (vertex_of_sample[i] < vertices) visit(b, i);
     };
     each([&](std::size_t, std::size_t i) { ++start_[vertex_of_sample[i] + 1]; });
@@ -32,7 +35,8 @@ class CellSamples {
     points_.resize(start_.back());
     std::vector<std::size_t> fill(start_.begin(), start_.end() - 1);
     each([&](std::size_t b, std::size_t i) {
-      points_[fill[vertex_of_sample[i]]++] = samples.block_center(samples.blocks[b]) + Vec3{samples.x[i], samples.y[i], samples.z[i]};
+      points_[fill[vertex_of_sample[i]]++] =
+          samples.block_center(samples.blocks[b]) + Vec3{samples.x[i], samples.y[i], samples.z[i]};
     });
   }
   std::span<const Vec3> of(std::uint32_t v) const { return {points_.data() + start_[v], start_[v + 1] - start_[v]}; }
@@ -44,7 +48,8 @@ class CellSamples {
 
 class Fitter {
  public:
-  Fitter(Mesh& mesh, const CellSamples& cells, const Projector* projector) : mesh_(mesh), cells_(cells), projector_(projector), rings_(mesh) {}
+  Fitter(Mesh& mesh, const CellSamples& cells, const Projector* projector)
+      : mesh_(mesh), cells_(cells), projector_(projector), rings_(mesh) {}
 
   /// Largest squared distance of a cell's samples from the triangles around its vertex.
   double deviation(std::uint32_t v) const { return deviation_[v]; }
@@ -57,8 +62,8 @@ class Fitter {
     });
   }
 
-  /// Pulls a vertex of the neighbourhood onto the sample of v's cell that is farthest from the mesh, or as far towards it as
-  /// the triangles allow.
+  /// Pulls a vertex of the neighbourhood onto the sample of v's cell that is farthest from the mesh, or as far towards
+  /// it as the triangles allow.
   bool reach(std::uint32_t v) {
     const std::optional<Vec3> farthest = farthest_sample(v);
     if (!farthest) return false;
@@ -98,10 +103,13 @@ class Fitter {
     std::sort(region.begin(), region.end());
     region.erase(std::unique(region.begin(), region.end()), region.end());
     const double before = worst_deviation(region);
-    const std::array<Vec3, 3> original = {mesh_.vertices[corners[0]], mesh_.vertices[corners[1]], mesh_.vertices[corners[2]]};
+    const std::array<Vec3, 3> original = {mesh_.vertices[corners[0]], mesh_.vertices[corners[1]],
+                                          mesh_.vertices[corners[2]]};
     std::array<std::vector<Vec3>, 3> normals;
     std::array<double, 3> floor;
-    for (int c = 0; c < 3; ++c) normals[c] = rings_.normals(corners[c]), floor[c] = std::min(least_score, rings_.worst_score(corners[c], normals[c]));
+    for (int c = 0; c < 3; ++c)
+      normals[c] = rings_.normals(corners[c]),
+      floor[c] = std::min(least_score, rings_.worst_score(corners[c], normals[c]));
     for (const std::uint32_t c : corners) mesh_.vertices[c] += step;
     bool good = true;
     for (int c = 0; c < 3; ++c) good = good && rings_.worst_score(corners[c], normals[c]) >= floor[c];
@@ -124,7 +132,8 @@ class Fitter {
     const double edge = worth_fitting * rings_.edge_length(v);
     double worst = 0;
     for (const Vec3& p : cells_.of(v))
-      if (!is_within(p, rings_.triangles(v), edge * edge)) worst = std::max(worst, squared_distance(p, rings_.triangles(v)));
+      if (!is_within(p, rings_.triangles(v), edge * edge))
+        worst = std::max(worst, squared_distance(p, rings_.triangles(v)));
     return worst;
   }
   bool is_within(const Vec3& p, std::span<const std::uint32_t> triangles, double limit) const {
@@ -139,7 +148,9 @@ class Fitter {
     double nearest = std::numeric_limits<double>::infinity();
     for (const std::uint32_t t : triangles) {
       const Triangle& c = mesh_.triangles[t];
-      nearest = std::min(nearest, squared_norm(p - closest_point_on_triangle(p, mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]])));
+      nearest =
+          std::min(nearest, squared_norm(p - closest_point_on_triangle(p, mesh_.vertices[c[0]], mesh_.vertices[c[1]],
+                                                                       mesh_.vertices[c[2]])));
     }
     return nearest;
   }
@@ -154,7 +165,8 @@ class Fitter {
   }
   std::vector<std::uint32_t> triangles_around(const std::vector<std::uint32_t>& vertices) const {
     std::vector<std::uint32_t> list;
-    for (const std::uint32_t w : vertices) list.insert(list.end(), rings_.triangles(w).begin(), rings_.triangles(w).end());
+    for (const std::uint32_t w : vertices)
+      list.insert(list.end(), rings_.triangles(w).begin(), rings_.triangles(w).end());
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
     return list;
@@ -171,8 +183,8 @@ class Fitter {
     for (const std::uint32_t w : cells) worst = std::max(worst, deviation_[w]);
     return worst;
   }
-  /// Whether v's squared deviation fell to `share` of what it was and no cell's rose above `worst`; then the cells' deviations
-  /// are brought up to date.
+  /// Whether v's squared deviation fell to `share` of what it was and no cell's rose above `worst`; then the cells'
+  /// deviations are brought up to date.
   bool is_better(std::uint32_t v, double share, std::span<const std::uint32_t> cells, double worst) {
     for (const Vec3& p : cells_.of(v))
       if (!is_within(p, rings_.triangles(v), share * deviation_[v])) return false;
@@ -187,7 +199,8 @@ class Fitter {
     return true;
   }
 
-  /// Puts the vertex there, lets the two rings around it give way, and keeps that if triangles stay good and the mesh comes nearer.
+  /// Puts the vertex there, lets the two rings around it give way, and keeps that if triangles stay good and the mesh
+  /// comes nearer.
   bool pull(std::uint32_t v, std::uint32_t mover, const Vec3& target) {
     const auto region = two_rings(mover);
     const auto triangles = triangles_around(region);
@@ -244,8 +257,8 @@ class Fitter {
 
 }  // namespace
 
-std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, const Projector* projector,
-                         Run& run) {
+std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
+                         const Projector* projector, Run& run) {
   const std::size_t count = mesh.vertices.size();
   const CellSamples cells(samples, vertex_of_sample, count);
   Fitter fitter(mesh, cells, projector);

@@ -11,15 +11,16 @@
 
 namespace evenmesh {
 
-/// Lowers the largest distances between samples and mesh. A cell's sample that lies far from the triangles around its vertex
-/// is a tip or ridge between vertices; the vertices nearby are moved towards it, along the surface, as long as their
-/// triangles stay good (Q ≥ 0.648, angles ≥ 34.2°). On domes so small that no triangle of this size can follow them, the
-/// triangle is lifted half way off the surface, by at most a fifth of an edge: that halves the largest deviation.
+/// Lowers the largest distances between samples and mesh. A cell's sample that lies far from the triangles around its
+/// vertex is a tip or ridge between vertices; the vertices nearby are moved towards it, along the surface, as long as
+/// their triangles stay good (Q ≥ 0.648, angles ≥ 34.2°). On domes so small that no triangle of this size can follow
+/// them, the triangle is lifted half way off the surface, by at most a fifth of an edge: that halves the largest
+/// deviation.
 ///
 /// @param vertex_of_sample  vertex whose cell each sample belongs to, none (0xffffffff) for dust
-/// Guarantee: same bits for any number of threads. Cost: about 30 ns per sample, and a millisecond for every vertex moved.
-/// Returns the number of vertices moved.
-std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, const Projector* projector,
-                         Run& run);
+/// Guarantee: same bits for any number of threads. Cost: about 30 ns per sample, and a millisecond for every vertex
+/// moved. Returns the number of vertices moved.
+std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
+                         const Projector* projector, Run& run);
 
 }  // namespace evenmesh

@@ -84,7 +84,8 @@ class Flipper {
   /// (a, b, c) and (b, a, d) become (d, c, a) and (c, d, b), in place: h then runs from d to c.
   void flip(std::uint32_t h) {
     const std::uint32_t o = opposite_[h];
-    const std::uint32_t hn = HalfEdges::next(h), hp = HalfEdges::previous(h), on = HalfEdges::next(o), op = HalfEdges::previous(o);
+    const std::uint32_t hn = HalfEdges::next(h), hp = HalfEdges::previous(h), on = HalfEdges::next(o),
+                        op = HalfEdges::previous(o);
     const std::uint32_t a = start(h), b = start(o), c = start(hp), d = start(op);
     const std::uint32_t bc = opposite_[hn], ca = opposite_[hp], ad = opposite_[on], db = opposite_[op];
     const auto set = [&](std::uint32_t e, std::uint32_t v) { mesh_.triangles[e / 3][e % 3] = v; };
@@ -100,6 +101,8 @@ class Flipper {
 
 }  // namespace
 
-std::size_t flip_to_delaunay(Mesh& mesh) { return Flipper(mesh).run(); }
+std::size_t flip_to_delaunay(Mesh& mesh) {
+  return Flipper(mesh).run();
+}
 
 }  // namespace evenmesh

@@ -7,8 +7,8 @@
 
 namespace evenmesh {
 
-/// Flips edges until every one is Delaunay (the angles opposite to it add up to at most 180°), where that neither folds the
-/// surface (the two new normals stay within 60° of both old ones) nor doubles an edge.
+/// Flips edges until every one is Delaunay (the angles opposite to it add up to at most 180°), where that neither folds
+/// the surface (the two new normals stay within 60° of both old ones) nor doubles an edge.
 ///
 /// Guarantee: stays a closed two-manifold with the same vertices. Returns the number of flips. Cost: O(triangles).
 /// @pre  closed, oriented, two-manifold

@@ -28,8 +28,8 @@ struct Entry {
 };
 
 /// One entry per label of the block, in order of first appearance.
-void collect_block(const SampleSet& samples, const SampleBlock& block, std::span<const std::uint32_t> labels, std::span<const Vec3> seeds,
-                   std::vector<Entry>& entries) {
+void collect_block(const SampleSet& samples, const SampleBlock& block, std::span<const std::uint32_t> labels,
+                   std::span<const Vec3> seeds, std::vector<Entry>& entries) {
   const Vec3 center = samples.block_center(block);
   const std::size_t first = entries.size();
   std::size_t at = first;
@@ -68,8 +68,8 @@ CellShape solve(const Quadric& q, const Vec3& seed) {
 
 }  // namespace
 
-std::vector<CellShape> cell_shapes(const SampleSet& samples, std::span<const std::uint32_t> labels, std::span<const Vec3> seeds,
-                                   Run& run) {
+std::vector<CellShape> cell_shapes(const SampleSet& samples, std::span<const std::uint32_t> labels,
+                                   std::span<const Vec3> seeds, Run& run) {
   constexpr std::size_t chunk = 256;
   std::vector<std::vector<Entry>> entries((samples.blocks.size() + chunk - 1) / chunk);
   parallel_tasks(run, entries.size(), [&](std::size_t c) {

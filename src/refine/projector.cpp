@@ -14,7 +14,7 @@ class MeshProjector : public Projector {
  public:
   MeshProjector(const Mesh& mesh, const Box& bounds, Run& run) : query_(mesh, run), bounds_(bounds) {
     const Box own = mesh.bounds();
-    for (int a = 0; a < 3; ++a) cut_[2 * a] = own.lo[a] < bounds.lo[a], cut_[2 * a + 1] = own.hi[a] > bounds.hi[a];
+    for (int a = 0; a < 3; ++a) cut_[2 * a] = own.lo[a]<bounds.lo[a], cut_[2 * a + 1] = own.hi[a]> bounds.hi[a];
   }
   Vec3 project(const Vec3& p, double limit) const override {
     Vec3 best = p;

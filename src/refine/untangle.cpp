@@ -6,7 +6,8 @@ namespace evenmesh {
 namespace {
 
 /// Marks the vertices of the pairs' triangles and `rings` rings around them.
-std::vector<char> region(const Mesh& mesh, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs, int rings) {
+std::vector<char> region(const Mesh& mesh, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs,
+                         int rings) {
   std::vector<char> in(mesh.vertices.size(), 0);
   for (const auto& [s, t] : pairs)
     for (int c = 0; c < 3; ++c) in[mesh.triangles[s][c]] = in[mesh.triangles[t][c]] = 1;

@@ -14,8 +14,9 @@ namespace evenmesh {
 /// Pairs of intersecting triangles of a mesh.
 using IntersectionFinder = std::function<std::vector<std::pair<std::uint32_t, std::uint32_t>>(const Mesh&)>;
 
-/// Smooths the vertices of intersecting triangles, in growing neighbourhoods, until nothing intersects or nothing helps.
-/// Returns the number of pairs that are left. Cost: one search, and one more for every round that was needed (at most 12).
+/// Smooths the vertices of intersecting triangles, in growing neighbourhoods, until nothing intersects or nothing
+/// helps. Returns the number of pairs that are left. Cost: one search, and one more for every round that was needed (at
+/// most 12).
 /// @pre  two-manifold
 std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run);
 

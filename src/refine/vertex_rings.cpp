@@ -2,7 +2,8 @@
 
 namespace evenmesh {
 
-VertexRings::VertexRings(const Mesh& mesh) : mesh_(mesh), start_(mesh.vertices.size() + 1, 0), around_(3 * mesh.triangles.size()) {
+VertexRings::VertexRings(const Mesh& mesh)
+    : mesh_(mesh), start_(mesh.vertices.size() + 1, 0), around_(3 * mesh.triangles.size()) {
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t v : t) ++start_[v + 1];
   for (std::size_t v = 0; v + 1 < start_.size(); ++v) start_[v + 1] += start_[v];
@@ -23,7 +24,8 @@ Vec3 VertexRings::normal(std::uint32_t v) const {
 double VertexRings::edge_length(std::uint32_t v) const {
   double sum = 0;
   for (const std::uint32_t t : triangles(v))
-    for (int c = 0; c < 3; ++c) sum += norm(mesh_.vertices[mesh_.triangles[t][(c + 1) % 3]] - mesh_.vertices[mesh_.triangles[t][c]]);
+    for (int c = 0; c < 3; ++c)
+      sum += norm(mesh_.vertices[mesh_.triangles[t][(c + 1) % 3]] - mesh_.vertices[mesh_.triangles[t][c]]);
   return sum / (3.0 * static_cast<double>(triangles(v).size()));
 }
 

@@ -16,7 +16,9 @@ class VertexRings {
  public:
   explicit VertexRings(const Mesh& mesh);
 
-  std::span<const std::uint32_t> triangles(std::uint32_t v) const { return {around_.data() + start_[v], start_[v + 1] - start_[v]}; }
+  std::span<const std::uint32_t> triangles(std::uint32_t v) const {
+    return {around_.data() + start_[v], start_[v + 1] - start_[v]};
+  }
   /// Area-weighted mean of the triangles' normals, unit length.
   Vec3 normal(std::uint32_t v) const;
   /// Mean edge length of the triangles around v.
@@ -31,7 +33,9 @@ class VertexRings {
   Vec3 normal_of(const Triangle& t) const {
     return normalized(cross(mesh_.vertices[t[1]] - mesh_.vertices[t[0]], mesh_.vertices[t[2]] - mesh_.vertices[t[0]]));
   }
-  double score(const Triangle& t) const { return score(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]); }
+  double score(const Triangle& t) const {
+    return score(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+  }
 
  private:
   const Mesh& mesh_;
