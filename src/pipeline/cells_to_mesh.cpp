@@ -156,6 +156,11 @@ class Cells {
 
   bool needs_seeds() const { return !complex_.defects.empty() || !unconnected().empty(); }
 
+  /// Length of the mesh's edges, as many cells as there are now.
+  double edge() const {
+    return edge_length_of(samples_.total_area, static_cast<double>(std::max({count_, seeds_.size(), complex_.labels})));
+  }
+
   /// Labels with a defect, and those that got no triangle.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> defects() const {
     auto list = complex_.defects;
@@ -165,7 +170,7 @@ class Cells {
 
   Mending plan(std::span<const Vec3> pinches, MendOptions options) {
     return stages_.stage("connect", 0, [&] {
-      options.edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
+      options.edge = edge();
       options.given = seeds_.size() - complex_.pieces.size();
       return plan_mending(samples_, labels_, seeds_, defects(), pinches, balls_, options);
     });
@@ -185,7 +190,7 @@ class Cells {
       run_.log(fmt::format("mend {}: {} defects, {} seeds, {} balls, {} pinches", round, found, seeds_.size(), balls_.balls().size(), pinches.size()));
       const bool last_resort = round >= ball_rounds, seeds_are_idle = round >= seed_rounds || idle_rounds >= patience;
       if (seeds_are_idle) idle_rounds = patience;
-      const Mending mending = plan(pinches, {.balls_only = seeds_are_idle, .seeds_only = last_resort});
+      const Mending mending = plan(pinches, {.prefer_balls = seeds_are_idle, .seeds_only = last_resort});
       forget_pieces();
       seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
       report_.inserted_seeds += mending.seeds.size();
@@ -194,7 +199,8 @@ class Cells {
         regularize(mending.changed);
         pinches_known = false;
       }
-      if (!last_resort) settle();  // it would draw seeds out of the narrow places they are put into
+      // Balance would draw seeds out of the narrow places they have been put into.
+      if (!last_resort && (!seeds_are_idle || !mending.changed.empty())) settle();
       connect();
       if ((!dust_cleared || !mending.changed.empty()) && !unconnected().empty()) {
         dust_cleared = true;
@@ -208,11 +214,10 @@ class Cells {
     stages_.stage("regularize", 0, [&] {
       std::vector<Ball> balls;
       for (const std::uint32_t b : changed) balls.push_back(balls_.balls()[b]);
-      const double edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
       const std::size_t given = std::min(seeds_.size(), count_);
       samples_ = unite_balls(samples_, balls, run_);
       evaluator_ = make_evaluator();
-      clear_around(seeds_, balls_, changed, edge);
+      clear_around(seeds_, balls_, changed, edge());
       if (seeds_.size() < given) adjust_count(*evaluator_, seeds_, given, options_.seed + 11, run_);
       ++report_.regularization_rounds;
     });

@@ -11,7 +11,8 @@ constexpr std::uint32_t fewest_samples = 12;  ///< of a cell that may still be d
 /// A hash grid of points.
 class PointIndex {
  public:
-  PointIndex(std::span<const Vec3> points, double reach) : points_(points.begin(), points.end()), index_(spheres(points, reach)) {}
+  PointIndex(std::span<const Vec3> points, double reach)
+      : points_(points.begin(), points.end()), index_(spheres(points, reach)) {}
   template <typename Visit>
   void near(const Vec3& p, double reach, const Visit& visit) const {
     index_.near(p, reach, [&](std::uint32_t i) {
@@ -96,7 +97,11 @@ class Planner {
     bool pinched = false;
     pinches_.near(middle, reach, [&](std::uint32_t i) { pinched = true, put_ball(pinch_points_[i]); });
     if (pinched) return;
-    if (options_.balls_only || std::min(cells_[a].samples, cells_[b].samples) < fewest_samples) return put_ball(middle);
+    if (options_.prefer_balls || std::min(cells_[a].samples, cells_[b].samples) < fewest_samples) {
+      // Far from all pinches the grid does resolve the shape, however fine its features are.
+      pinches_.near(middle, 3 * options_.edge, [&](std::uint32_t) { pinched = true; });
+      if (pinched) return put_ball(middle);
+    }
     asked_[a] = asked_[b] = 1;
   }
 

@@ -19,8 +19,8 @@ struct Mending {
 struct MendOptions {
   double edge = 0;          ///< wanted edge length, model units; balls start at half of it and end at one
   std::size_t given = 0;    ///< labels from here on are those of pieces: their seeds are not there yet
-  bool balls_only = false;  ///< no more seeds: change the topology everywhere
-  bool seeds_only = false;  ///< no more balls: divide cells down to single samples
+  bool prefer_balls = false;  ///< wherever a pinch is not far
+  bool seeds_only = false;    ///< no more balls: divide cells down to single samples
 };
 
 /// A seed goes to the sample farthest from the centre of each defective cell. Where cells have shrunk to a few samples, or a
