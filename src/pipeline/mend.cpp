@@ -97,12 +97,18 @@ class Planner {
     bool pinched = false;
     pinches_.near(middle, reach, [&](std::uint32_t i) { pinched = true, put_ball(pinch_points_[i]); });
     if (pinched) return;
-    if (options_.prefer_balls || std::min(cells_[a].samples, cells_[b].samples) < fewest_samples) {
-      // Far from all pinches the grid does resolve the shape, however fine its features are.
-      pinches_.near(middle, 3 * options_.edge, [&](std::uint32_t) { pinched = true; });
-      if (pinched) return put_ball(middle);
-    }
+    if (std::min(cells_[a].samples, cells_[b].samples) < fewest_samples) return put_ball(middle);
+    if (options_.prefer_balls && unresolved_near(middle)) return put_ball(middle);
     asked_[a] = asked_[b] = 1;
+  }
+
+  /// Far from all pinches, those under balls included, the grid does resolve the shape, however fine its features are.
+  bool unresolved_near(const Vec3& p) const {
+    const double reach = 3 * options_.edge;
+    bool found = false;
+    pinches_.near(p, reach, [&](std::uint32_t) { found = true; });
+    balls_.near(p, reach, [&](std::uint32_t b) { found |= norm(p - balls_.balls()[b].center) < reach; });
+    return found;
   }
 
   /// A new ball, unless one is here already: that one grows, once per round.
