@@ -74,7 +74,7 @@ struct MeshResult {
 /// Samples a shape's surface, spreads seeds evenly over it (centroidal Voronoi tessellation) and connects them.
 ///
 /// Guarantee: closed, two-manifold, oriented outward, without self-intersections; what could not be kept is a notice
-/// with promise_broken. Same bytes for any number of threads. Cost: two cores take about 0.05 ms and 6 kB per vertex.
+/// with promise_broken. Same bytes for any number of threads. Cost: two cores take about 0.1 ms and 7 kB per vertex.
 /// @throws InvalidInput   options out of range
 /// @throws UnusableInput  no surface within the bounds
 /// @throws Cancelled      through `run`
