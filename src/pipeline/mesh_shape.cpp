@@ -164,7 +164,13 @@ class Job {
       for (std::uint32_t& l : labels) l = vertex_of_label_[l];
       fit_extremes(mesh, samples_, labels, projector_.get(), run_);
     }
-    report_.self_intersections = untangle(mesh, projector_.get(), [&](const Mesh& m) { return self_intersections(m, run_); }, run_);
+    // Files hold single precision: what matters is that the mesh written does not intersect itself.
+    const auto find = [&](Mesh m) {
+      for (Vec3& v : m.vertices)
+        for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(v[a]);
+      return self_intersections(m, run_);
+    };
+    report_.self_intersections = untangle(mesh, projector_.get(), find, run_);
   }
 
   void finish(const Mesh& mesh, bool two_manifold) {

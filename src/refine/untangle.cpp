@@ -1,9 +1,14 @@
 #include "refine/untangle.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "refine/flips.h"
 
 namespace evenmesh {
 namespace {
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// Marks the vertices of the pairs' triangles and `rings` rings around them.
 std::vector<char> region(const Mesh& mesh, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs,
@@ -36,10 +41,110 @@ void smooth(Mesh& mesh, const std::vector<char>& marked, const Projector* projec
   }
 }
 
+/// Moves the marked vertices along their normals by `share` of the mean length of their edges.
+void shift(Mesh& mesh, const std::vector<char>& marked, double share) {
+  std::vector<Vec3> normal(mesh.vertices.size());
+  std::vector<double> length(mesh.vertices.size(), 0);
+  std::vector<int> count(mesh.vertices.size(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const Vec3 n = cross(b - a, c - a);
+    for (int i = 0; i < 3; ++i) {
+      normal[t[i]] += n;
+      length[t[i]] += norm(mesh.vertices[t[(i + 1) % 3]] - mesh.vertices[t[i]]), ++count[t[i]];
+    }
+  }
+  for (std::size_t v = 0; v < marked.size(); ++v)
+    if (marked[v] && count[v] > 0) mesh.vertices[v] += (share * length[v] / count[v]) * normalized(normal[v]);
+}
+
+/// The triangles around one knot of intersections, as a mesh of their own.
+struct Patch {
+  Mesh mesh;
+  std::vector<std::uint32_t> vertices;  ///< in the whole mesh
+  std::vector<char> movable;
+};
+
+/// The knot around pairs[first]: its pairs are those that share vertices, one ring included, with others of it; they are taken off.
+Patch take_knot(const Mesh& mesh, Pairs& pairs) {
+  std::vector<char> in(mesh.vertices.size(), 0);
+  Pairs knot{pairs.front()};
+  pairs.erase(pairs.begin());
+  for (bool grown = true; grown;) {
+    in = region(mesh, knot, 1);
+    grown = false;
+    std::erase_if(pairs, [&](const auto& pair) {
+      for (const std::uint32_t t : {pair.first, pair.second})
+        for (const std::uint32_t v : mesh.triangles[t])
+          if (in[v]) return knot.push_back(pair), grown = true;
+      return false;
+    });
+  }
+  Box box;
+  for (std::size_t v = 0; v < in.size(); ++v)
+    if (in[v]) box.add(mesh.vertices[v]);
+  const double margin = 0.5 * box.diagonal();
+  box.lo -= {margin, margin, margin}, box.hi += {margin, margin, margin};
+  Patch patch;
+  std::vector<std::uint32_t> index(mesh.vertices.size(), 0xffffffffu);
+  for (const Triangle& t : mesh.triangles) {
+    Box own;
+    for (const std::uint32_t v : t) own.add(mesh.vertices[v]);
+    bool apart = false;
+    for (int a = 0; a < 3; ++a) apart |= own.lo[a] > box.hi[a] || own.hi[a] < box.lo[a];
+    if (apart) continue;
+    Triangle local{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = t[c];
+      if (index[v] == 0xffffffffu) {
+        index[v] = static_cast<std::uint32_t>(patch.vertices.size());
+        patch.vertices.push_back(v);
+        patch.mesh.vertices.push_back(mesh.vertices[v]);
+        patch.movable.push_back(in[v]);
+      }
+      local[c] = index[v];
+    }
+    patch.mesh.triangles.push_back(local);
+  }
+  return patch;
+}
+
+/// Tries one kind of motion after the other and keeps what is best; true if anything was gained.
+bool loosen(Patch& patch, const Projector* projector, const IntersectionFinder& find) {
+  constexpr int motions = 4, steps = 6;
+  const Mesh start = patch.mesh;
+  const std::size_t before = find(start).size();
+  std::size_t fewest = before;
+  for (int motion = 0; motion < motions && fewest > 0; ++motion) {
+    Mesh mesh = start;
+    for (int step = 0; step < steps && fewest > 0; ++step) {
+      if (motion < 2)
+        shift(mesh, patch.movable, motion == 0 ? 0.07 : -0.07);  // thin walls thicker, narrow gaps wider
+      else
+        smooth(mesh, patch.movable, motion == 2 ? projector : nullptr);
+      const std::size_t left = find(mesh).size();
+      if (left < fewest) fewest = left, patch.mesh = mesh;
+    }
+  }
+  return fewest < before;
+}
+
+/// Knot by knot, each with what helps there.
+void loosen_knots(Mesh& mesh, Pairs pairs, const Projector* projector, const IntersectionFinder& find, Run& run) {
+  constexpr int most_knots = 200;
+  for (int knot = 0; knot < most_knots && !pairs.empty(); ++knot) {
+    run.throw_if_cancelled();
+    Patch patch = take_knot(mesh, pairs);
+    if (!loosen(patch, projector, find)) continue;
+    for (std::size_t v = 0; v < patch.vertices.size(); ++v)
+      if (patch.movable[v]) mesh.vertices[patch.vertices[v]] = patch.mesh.vertices[v];
+  }
+}
+
 }  // namespace
 
 std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run) {
-  constexpr int rounds = 12;
+  constexpr int rounds = 12, knot_rounds = 3;
   auto pairs = find(mesh);
   Mesh best = mesh;
   std::size_t fewest = pairs.size();
@@ -52,6 +157,15 @@ std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionF
     if (pairs.size() < fewest) fewest = pairs.size(), best = mesh;
   }
   if (pairs.size() > fewest) mesh = std::move(best);
+  if (fewest == 0) return 0;
+  best = mesh;
+  for (int round = 0; round < knot_rounds && fewest > 0; ++round) {
+    loosen_knots(mesh, find(mesh), projector, find, run);
+    const std::size_t left = find(mesh).size();
+    if (left >= fewest) break;
+    fewest = left, best = mesh;
+  }
+  mesh = std::move(best);
   return fewest;
 }
 
