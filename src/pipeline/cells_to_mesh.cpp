@@ -65,10 +65,9 @@ class Cells {
     });
   }
 
-  /// By Lloyd's iteration: seeds never leave their cells, however small the piece of surface is.
   void settle(std::size_t effort = 1) {
     stages_.stage("balance", 0, [&] {
-      const auto result = optimize(*evaluator_, seeds_, {true, effort * settling_evaluations, options_.tolerance}, run_);
+      const auto result = optimize(*evaluator_, seeds_, {options_.optimizer == Optimizer::lloyd, effort * settling_evaluations, options_.tolerance}, run_);
       report_.energies.insert(report_.energies.end(), result.ratios.begin(), result.ratios.end());
     });
   }
@@ -177,12 +176,6 @@ class Cells {
     });
   }
 
-  void plant(const Mending& mending) {
-    for (const auto& [label, place] : mending.moved) seeds_[label] = place;
-    forget_pieces();
-    seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
-  }
-
   /// Seeds, and balls where seeds cannot help, until all cells fit together.
   void mend() {
     std::vector<Vec3> pinches;
@@ -198,7 +191,8 @@ class Cells {
       const bool last_resort = round >= ball_rounds, seeds_are_idle = round >= seed_rounds || idle_rounds >= patience;
       if (seeds_are_idle) idle_rounds = patience;
       const Mending mending = plan(pinches, {.prefer_balls = seeds_are_idle, .seeds_only = last_resort});
-      plant(mending);
+      forget_pieces();
+      seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
       report_.inserted_seeds += mending.seeds.size();
       if (!mending.changed.empty()) {
         balls_ = BallIndex(mending.balls);
@@ -271,7 +265,8 @@ class Cells {
     for (int round = 0; round < trim_seed_rounds && needs_seeds(); ++round) {
       const Mending mending = plan({}, {});
       if (!mending.changed.empty()) return;
-      plant(mending);
+      forget_pieces();
+      seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
       settle();
       connect();
     }

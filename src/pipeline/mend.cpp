@@ -1,9 +1,7 @@
 #include "pipeline/mend.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <unordered_map>
 
 namespace evenmesh {
 namespace {
@@ -45,31 +43,21 @@ class Planner {
   Planner(const SampleSet& samples, std::span<const std::uint32_t> labels, std::span<const Vec3> seeds, std::span<const Vec3> pinches,
           const BallIndex& balls, const MendOptions& options)
       : samples_(samples), labels_(labels), seeds_(seeds), pinch_points_(pinches), pinches_(pinches, options.edge), balls_(balls),
-        options_(options), cells_(seeds.size()), asked_(seeds.size(), 0), no_disk_(seeds.size(), 0) {
+        options_(options), cells_(seeds.size()), asked_(seeds.size(), 0) {
     mending_.balls = balls.balls();
     grown_.assign(mending_.balls.size(), 0);
   }
 
   Mending plan(std::span<const std::pair<std::uint32_t, std::uint32_t>> defects) {
     std::vector<char> defective(seeds_.size(), 0);
-    for (const auto& [a, b] : defects) {
-      defective[a] = defective[b] = 1;
-      if (a == b) no_disk_[a] = 1;
-    }
+    for (const auto& [a, b] : defects) defective[a] = defective[b] = 1;
     measure(defective);
     for (const auto& [a, b] : defects) mend(a, b);
-    find_rings();
-    for (std::uint32_t l = 0; l < asked_.size(); ++l) {
-      if (!asked_[l] || cells_[l].farthest <= 0) continue;
-      const bool piece = l >= options_.given;
-      if (const auto ring = rings_.find(l); ring != rings_.end()) {
-        mending_.seeds.insert(mending_.seeds.end(), ring->second.begin() + (piece ? 0 : 1), ring->second.end());
-        if (!piece) mending_.moved.push_back({l, ring->second.front()});
-      } else {
+    for (std::size_t l = 0; l < asked_.size(); ++l)
+      if (asked_[l] && cells_[l].farthest > 0) {
         mending_.seeds.push_back(cells_[l].far_sample);
-        if (piece) mending_.seeds.push_back(seeds_[l]);
+        if (l >= options_.given) mending_.seeds.push_back(seeds_[l]);
       }
-    }
     return std::move(mending_);
   }
 
@@ -79,9 +67,10 @@ class Planner {
     for (const SampleBlock& block : samples_.blocks) {
       const Vec3 center = samples_.block_center(block);
       for (std::uint32_t i = block.begin; i < block.end; ++i)
-        if (defective[labels_[i]]) visit(i, labels_[i], center + Vec3{samples_.x[i], samples_.y[i], samples_.z[i]});
+        if (defective[labels_[i]]) visit(i, cells_index(i), center + Vec3{samples_.x[i], samples_.y[i], samples_.z[i]});
     }
   }
+  std::uint32_t cells_index(std::uint32_t sample) const { return labels_[sample]; }
 
   void measure(const std::vector<char>& defective) {
     for_samples(defective, [&](std::uint32_t i, std::uint32_t l, const Vec3& p) {
@@ -95,34 +84,6 @@ class Planner {
       const double distance = squared_norm(p - seeds_[l]);
       if (distance > cell.farthest) cell.farthest = distance, cell.far_sample = p;
     });
-  }
-
-  /// Three samples around the waist of every cell that is asked for, is no disk, and whose normals turn all around.
-  void find_rings() {
-    struct Site {
-      Vec3 position, normal;
-    };
-    std::unordered_map<std::uint32_t, std::vector<Site>> sites;
-    for_samples(no_disk_, [&](std::uint32_t i, std::uint32_t l, const Vec3& p) {
-      if (asked_[l]) sites[l].push_back({p, unpack_normal(samples_.normal[i])});
-    });
-    for (const auto& [l, list] : sites) {
-      const Vec3 center = cells_[l].centroid(seeds_[l]);
-      const double size = std::sqrt(cells_[l].area);
-      const auto best = [&](const auto& turn) {  // far around in normals, near in space
-        double most = -1e30;
-        const Site* found = nullptr;
-        for (const Site& s : list)
-          if (const double value = turn(s) - norm(s.position - center) / size; value > most) most = value, found = &s;
-        return found;
-      };
-      const Site* first = best([](const Site&) { return 0.0; });
-      const Site* second = best([&](const Site& s) { return -2 * dot(s.normal, first->normal); });
-      const Site* third = best([&](const Site& s) { return -2 * std::max(dot(s.normal, first->normal), dot(s.normal, second->normal)); });
-      if (dot(first->normal, second->normal) > -0.3 || std::max(dot(third->normal, first->normal), dot(third->normal, second->normal)) > 0.5)
-        continue;
-      rings_[l] = {first->position, second->position, third->position};
-    }
   }
 
   void mend(std::uint32_t a, std::uint32_t b) {
@@ -178,8 +139,7 @@ class Planner {
   const BallIndex& balls_;
   const MendOptions& options_;
   std::vector<Cell> cells_;
-  std::vector<char> asked_, no_disk_, grown_;
-  std::unordered_map<std::uint32_t, std::array<Vec3, 3>> rings_;
+  std::vector<char> asked_, grown_;
   Mending mending_;
 };
 

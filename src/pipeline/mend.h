@@ -12,7 +12,6 @@ namespace evenmesh {
 
 struct Mending {
   std::vector<Vec3> seeds;        ///< to be added
-  std::vector<std::pair<std::uint32_t, Vec3>> moved;  ///< seeds that start again elsewhere
   std::vector<Ball> balls;        ///< all balls from now on: those given, some grown, and new ones
   std::vector<std::uint32_t> changed;  ///< indices of the balls that are new or have grown
 };
@@ -24,8 +23,7 @@ struct MendOptions {
   bool seeds_only = false;    ///< no more balls: divide cells down to single samples
 };
 
-/// A seed goes to the sample farthest from the centre of each defective cell; a cell that closes around a neck or tunnel gets three
-/// around it. Where cells have shrunk to a few samples, or a
+/// A seed goes to the sample farthest from the centre of each defective cell. Where cells have shrunk to a few samples, or a
 /// pinch of the grid (find_pinches) lies in them, more seeds cannot help: the topology there is an accident of the grid, and a
 /// ball makes it plain. A defect that meets a ball makes the ball grow. [Raster2Mesh §4.4]
 ///
