@@ -16,14 +16,17 @@ constexpr std::uint32_t none = 0xffffffffu;
 class BrickSigns {
  public:
   bool& inside(int i, int j, int k) { return inside_[(k * side + j) * side + i]; }
-  std::uint32_t& crossing(int axis, int i, int j, int k) { return crossing_[((axis * side + k) * side + j) * side + i]; }
+  std::uint32_t& crossing(int axis, int i, int j, int k) {
+    return crossing_[((axis * side + k) * side + j) * side + i];
+  }
 
   /// Signs follow from the crossings alone, up to one bit that any crossing tells.
   void load(const SampleSet& samples, const SampleBlock& block) {
     crossing_.fill(none);
     for (std::uint32_t s = block.begin; s < block.end; ++s) {
       const EdgeCode e = samples.edge[s];
-      crossing(static_cast<int>(e.axis()), static_cast<int>(e.i()), static_cast<int>(e.j()), static_cast<int>(e.k())) = s;
+      crossing(static_cast<int>(e.axis()), static_cast<int>(e.i()), static_cast<int>(e.j()), static_cast<int>(e.k())) =
+          s;
     }
     inside_.fill(false);
     for (int k = 0; k < brick_points; ++k) {
@@ -93,14 +96,19 @@ class Union {
       std::array<std::int64_t, 3> lo{}, hi{};
       for (int a = 0; a < 3; ++a) {
         const auto points = static_cast<std::int64_t>(g.size[static_cast<std::size_t>(a)]);
-        const double center = (balls_[b].center[a] - g.origin[a]) / g.spacing, reach = balls_[b].radius / g.spacing + 1.5;
-        lo[static_cast<std::size_t>(a)] = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(center - reach))) / 8;
-        hi[static_cast<std::size_t>(a)] = std::min(points - 1, static_cast<std::int64_t>(std::ceil(center + reach))) / 8;
+        const double center = (balls_[b].center[a] - g.origin[a]) / g.spacing,
+                     reach = balls_[b].radius / g.spacing + 1.5;
+        lo[static_cast<std::size_t>(a)] =
+            std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(center - reach))) / 8;
+        hi[static_cast<std::size_t>(a)] =
+            std::min(points - 1, static_cast<std::int64_t>(std::ceil(center + reach))) / 8;
       }
       for (std::int64_t k = lo[2]; k <= hi[2]; ++k)
         for (std::int64_t j = lo[1]; j <= hi[1]; ++j)
           for (std::int64_t i = lo[0]; i <= hi[0]; ++i)
-            pairs.push_back({morton_code(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j), static_cast<std::uint64_t>(k)), b});
+            pairs.push_back({morton_code(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j),
+                                         static_cast<std::uint64_t>(k)),
+                             b});
     }
     std::sort(pairs.begin(), pairs.end());
     for (const auto& [key, b] : pairs) {
@@ -109,7 +117,8 @@ class Union {
     }
   }
 
-  /// A brick without crossings is inside or outside as a whole: as the last layer of the next brick towards −x that has some.
+  /// A brick without crossings is inside or outside as a whole: as the last layer of the next brick towards −x that has
+  /// some.
   bool inside_of_empty(std::array<std::uint16_t, 3> brick) const {
     while (brick[0] > 0) {
       --brick[0];
@@ -150,15 +159,16 @@ class Union {
       for (int i = 0; i < BrickSigns::brick_points; ++i)
         for (int j = 0; j < BrickSigns::brick_points; ++j)
           for (int k = 0; k < BrickSigns::brick_points; ++k) {
-            const bool lower = after.inside(i, j, k), upper = after.inside(i + (axis == 0), j + (axis == 1), k + (axis == 2));
+            const bool lower = after.inside(i, j, k),
+                       upper = after.inside(i + (axis == 0), j + (axis == 1), k + (axis == 2));
             if (lower != upper) add(axis, {i, j, k}, lower, base, center, before, balls, out);
           }
     return out;
   }
 
   /// One crossing: the old one, unless it lies in a ball.
-  void add(int axis, std::array<int, 3> at, bool lower_inside, const std::array<int, 3>& base, const Vec3& center, BrickSigns& before,
-           const std::vector<std::uint32_t>& balls, NewBlock& out) const {
+  void add(int axis, std::array<int, 3> at, bool lower_inside, const std::array<int, 3>& base, const Vec3& center,
+           BrickSigns& before, const std::vector<std::uint32_t>& balls, NewBlock& out) const {
     const double h = samples_.grid.spacing;
     const std::uint32_t old = before.crossing(axis, at[0], at[1], at[2]);
     const Vec3 low = samples_.grid.point(base[0] + at[0], base[1] + at[1], base[2] + at[2]);
@@ -203,18 +213,23 @@ class Union {
   SampleSet merge(const std::vector<NewBlock>& made) const {
     SampleSet out;
     out.grid = samples_.grid;
-    out.disagreements = samples_.disagreements, out.unresolved = samples_.unresolved, out.cut_by_bounds = samples_.cut_by_bounds;
+    out.disagreements = samples_.disagreements, out.unresolved = samples_.unresolved,
+    out.cut_by_bounds = samples_.cut_by_bounds;
     std::size_t next = 0;
     const auto append = [](auto& to, const auto& from, std::size_t begin, std::size_t end) {
-      if (!from.empty()) to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(begin), from.begin() + static_cast<std::ptrdiff_t>(end));
+      if (!from.empty())
+        to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(begin),
+                  from.begin() + static_cast<std::ptrdiff_t>(end));
     };
     const auto close_block = [&](std::uint32_t begin, const std::array<std::uint16_t, 3>& brick) {
       const auto end = static_cast<std::uint32_t>(out.x.size());
       if (end == begin) return;
       SampleBlock block{begin, end, brick, {}};
       for (unsigned a = 1; a < 3; ++a)
-        block.axis_begin[a - 1] = static_cast<std::uint32_t>(
-            std::partition_point(out.edge.begin() + begin, out.edge.begin() + end, [&](EdgeCode e) { return e.axis() < a; }) - out.edge.begin());
+        block.axis_begin[a - 1] =
+            static_cast<std::uint32_t>(std::partition_point(out.edge.begin() + begin, out.edge.begin() + end,
+                                                            [&](EdgeCode e) { return e.axis() < a; }) -
+                                       out.edge.begin());
       for (std::uint32_t i = begin; i < end; ++i) out.total_area += out.area[i];
       out.blocks.push_back(block);
     };
@@ -249,7 +264,9 @@ class Union {
 
 }  // namespace
 
-SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, Run& run) { return Union(samples, balls, run).result(); }
+SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, Run& run) {
+  return Union(samples, balls, run).result();
+}
 
 BallIndex::BallIndex(std::vector<Ball> balls) : balls_(std::move(balls)) {
   for (const Ball& b : balls_) side_ = &b == balls_.data() ? b.radius : std::max(side_, b.radius);

@@ -16,8 +16,8 @@ struct Ball {
   double radius = 0;  ///< model units
 };
 
-/// The samples of the union of a sampled solid and some balls, on the same grid. Samples inside a ball are dropped, new ones
-/// lie on the spheres; the outermost grid points stay outside.
+/// The samples of the union of a sampled solid and some balls, on the same grid. Samples inside a ball are dropped, new
+/// ones lie on the spheres; the outermost grid points stay outside.
 ///
 /// Guarantee: the samples bound a solid, in the order a SampleSet promises; same bits for any number of threads.
 /// Cost: O(samples) for copying, and about a microsecond for every grid point near a ball.

@@ -18,7 +18,8 @@ std::vector<CubeBrick> cube_bricks(const SampleSet& samples) {
     return it != keys.end() && *it == key ? it - keys.begin() : std::int64_t{-1};
   };
 
-  // In the order of the blocks; a brick without samples of its own comes with the first block that has it as lower neighbour.
+  // In the order of the blocks; a brick without samples of its own comes with the first block that has it as lower
+  // neighbour.
   std::vector<CubeBrick> bricks;
   bricks.reserve(samples.blocks.size() * 5 / 4);
   for (std::size_t b = 0; b < samples.blocks.size(); ++b) {
@@ -65,7 +66,9 @@ void CubeWalker::load(const CubeBrick& brick) {
   }
 }
 
-void CubeWalker::unload() { crossed_.fill(0); }
+void CubeWalker::unload() {
+  crossed_.fill(0);
+}
 
 CubeWalker::Row CubeWalker::row(int j, int k) const {
   const auto bits = [&](int axis, int jj, int kk) { return crossed_[(axis * side + kk) * side + jj]; };

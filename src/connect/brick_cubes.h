@@ -24,7 +24,8 @@ class CubeWalker {
  public:
   explicit CubeWalker(const SampleSet& samples) : samples_(samples) { clear_all(); }
 
-  /// Calls visit(const std::uint32_t* loop, int length): sample indices in cyclic order, counter-clockwise from outside.
+  /// Calls visit(const std::uint32_t* loop, int length): sample indices in cyclic order, counter-clockwise from
+  /// outside.
   template <typename Visit>
   void walk(const CubeBrick& brick, const Visit& visit) {
     load(brick);

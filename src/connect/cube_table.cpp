@@ -3,7 +3,9 @@
 namespace evenmesh {
 namespace {
 
-constexpr int corner(int x, int y, int z) { return x + 2 * y + 4 * z; }
+constexpr int corner(int x, int y, int z) {
+  return x + 2 * y + 4 * z;
+}
 
 /// Edge between two neighbouring corners.
 int edge_between(int c, int d) {

@@ -6,12 +6,12 @@
 
 namespace evenmesh {
 
-/// Corners are numbered x + 2y + 4z. Edge 4·axis + a + 2b starts at the corner whose two other coordinates, in the order
-/// x, y, z, are (a, b), and runs along `axis`.
+/// Corners are numbered x + 2y + 4z. Edge 4·axis + a + 2b starts at the corner whose two other coordinates, in the
+/// order x, y, z, are (a, b), and runs along `axis`.
 struct CubeLoops {
-  std::uint8_t count = 0;                 ///< loops, at most 4
-  std::array<std::uint8_t, 5> start{};    ///< loop l is edges start[l] … start[l + 1] − 1
-  std::array<std::uint8_t, 12> edge{};    ///< cyclic, counter-clockwise seen from outside the solid
+  std::uint8_t count = 0;               ///< loops, at most 4
+  std::array<std::uint8_t, 5> start{};  ///< loop l is edges start[l] … start[l + 1] − 1
+  std::array<std::uint8_t, 12> edge{};  ///< cyclic, counter-clockwise seen from outside the solid
 };
 
 /// Loops for each of the 256 patterns of inside corners (bit c set: corner c is inside).

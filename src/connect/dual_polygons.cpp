@@ -8,11 +8,14 @@ namespace evenmesh {
 namespace {
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
-Pair ordered(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
+Pair ordered(std::uint32_t a, std::uint32_t b) {
+  return {std::min(a, b), std::max(a, b)};
+}
 
 /// Calls visit(polygon) for every list of labels.
 template <typename Visit>
-void for_polygons(const std::vector<std::vector<std::uint32_t>>& polygons, std::span<const std::uint32_t> labels, const Visit& visit) {
+void for_polygons(const std::vector<std::vector<std::uint32_t>>& polygons, std::span<const std::uint32_t> labels,
+                  const Visit& visit) {
   std::vector<std::uint32_t> polygon;
   for (const auto& list : polygons)
     for (std::size_t at = 0; at < list.size(); at += list[at] + 1) {
@@ -22,11 +25,12 @@ void for_polygons(const std::vector<std::vector<std::uint32_t>>& polygons, std::
     }
 }
 
-/// Edges that diagonals must not double: those of all polygons between corners of polygons with four corners and more, and the
-/// diagonals drawn so far.
+/// Edges that diagonals must not double: those of all polygons between corners of polygons with four corners and more,
+/// and the diagonals drawn so far.
 class TakenEdges {
  public:
-  TakenEdges(const std::vector<std::vector<std::uint32_t>>& polygons, std::span<const std::uint32_t> labels, std::size_t vertices) {
+  TakenEdges(const std::vector<std::vector<std::uint32_t>>& polygons, std::span<const std::uint32_t> labels,
+             std::size_t vertices) {
     std::vector<char> concerned(vertices, 0);
     for_polygons(polygons, labels, [&](const std::vector<std::uint32_t>& polygon) {
       if (polygon.size() > 3)
@@ -42,7 +46,8 @@ class TakenEdges {
   }
   bool has(std::uint32_t a, std::uint32_t b) const {
     const Pair edge = ordered(a, b);
-    return std::binary_search(sides_.begin(), sides_.end(), edge) || std::binary_search(diagonals_.begin(), diagonals_.end(), edge);
+    return std::binary_search(sides_.begin(), sides_.end(), edge) ||
+           std::binary_search(diagonals_.begin(), diagonals_.end(), edge);
   }
   void add(std::uint32_t a, std::uint32_t b) {
     const Pair edge = ordered(a, b);
@@ -54,7 +59,8 @@ class TakenEdges {
 };
 
 /// Cuts off the corner with the shortest diagonal that is no edge yet, until a triangle is left.
-void cut_ears(std::vector<std::uint32_t>& polygon, std::span<const Vec3> positions, TakenEdges& taken, std::vector<Triangle>& triangles) {
+void cut_ears(std::vector<std::uint32_t>& polygon, std::span<const Vec3> positions, TakenEdges& taken,
+              std::vector<Triangle>& triangles) {
   while (polygon.size() > 3) {
     const std::size_t n = polygon.size();
     std::size_t ear = 0;
@@ -64,7 +70,8 @@ void cut_ears(std::vector<std::uint32_t>& polygon, std::span<const Vec3> positio
       const std::uint32_t before = polygon[(i + n - 1) % n], after = polygon[(i + 1) % n];
       const double length = squared_norm(positions[after] - positions[before]);
       const bool is_taken = taken.has(before, after);
-      if (is_taken < ear_taken || (is_taken == ear_taken && length < shortest)) shortest = length, ear = i, ear_taken = is_taken;
+      if (is_taken < ear_taken || (is_taken == ear_taken && length < shortest))
+        shortest = length, ear = i, ear_taken = is_taken;
     }
     const std::uint32_t before = polygon[(ear + n - 1) % n], after = polygon[(ear + 1) % n];
     taken.add(before, after);
@@ -76,8 +83,8 @@ void cut_ears(std::vector<std::uint32_t>& polygon, std::span<const Vec3> positio
 
 }  // namespace
 
-DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& polygons, std::span<const std::uint32_t> labels,
-                              std::span<const Vec3> positions) {
+DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& polygons,
+                              std::span<const std::uint32_t> labels, std::span<const Vec3> positions) {
   DualMesh mesh;
   TakenEdges taken(polygons, labels, positions.size());
   for_polygons(polygons, labels, [&](std::vector<std::uint32_t>& polygon) {

@@ -10,19 +10,18 @@
 
 namespace evenmesh {
 
-/// Edges (a < b) without exactly two opposite triangles; (v, v) for a vertex with several fans, or one that a polygon visits
-/// twice. Unsorted, perhaps repeated.
+/// Edges (a < b) without exactly two opposite triangles; (v, v) for a vertex with several fans, or one that a polygon
+/// visits twice. Unsorted, perhaps repeated.
 using Defects = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 struct DualMesh {
   std::vector<Triangle> triangles;
   Defects defects;
-
 };
 
 /// @param polygons  lists of (count, count samples); a polygon's corners are its samples' labels
-DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& polygons, std::span<const std::uint32_t> labels,
-                              std::span<const Vec3> positions);
+DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& polygons,
+                              std::span<const std::uint32_t> labels, std::span<const Vec3> positions);
 
 /// What keeps triangles from being a closed, oriented two-manifold; empty when they are one.
 Defects manifold_defects(std::span<const Triangle> triangles, std::size_t vertices);

@@ -156,8 +156,9 @@ struct Piece {
 };
 
 /// All pieces of the labels that have several, by label, the largest first.
-std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels, std::vector<Index>& parent,
-                                          std::size_t label_count, std::vector<Index>& piece_count) {
+std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels,
+                                          std::vector<Index>& parent, std::size_t label_count,
+                                          std::vector<Index>& piece_count) {
   piece_count.assign(label_count, 0);
   for (std::size_t i = 0; i < parent.size(); ++i)
     if (parent[i] == i) ++piece_count[labels[i]];
@@ -174,7 +175,8 @@ std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::v
     for (Index i = block.begin; i < block.end; ++i) {
       if (piece_count[labels[i]] <= 1) continue;
       const Index root = find_root(parent, i);
-      Piece& piece = pieces[std::lower_bound(piece_of_root.begin(), piece_of_root.end(), std::pair{root, Index{0}})->second];
+      Piece& piece =
+          pieces[std::lower_bound(piece_of_root.begin(), piece_of_root.end(), std::pair{root, Index{0}})->second];
       piece.area += samples.area[i];
       piece.moment += double(samples.area[i]) * (center + Vec3{samples.x[i], samples.y[i], samples.z[i]});
     }
@@ -185,7 +187,8 @@ std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::v
   return pieces;
 }
 
-/// Gives every label's largest piece its label, other pieces a new one, tiny pieces that of the neighbour with the longest border.
+/// Gives every label's largest piece its label, other pieces a new one, tiny pieces that of the neighbour with the
+/// longest border.
 class Splitter {
  public:
   Splitter(const SampleSet& samples, std::vector<Index>& labels, Complex& complex, LabelComplex& result)
@@ -294,7 +297,8 @@ class Splitter {
 
 }  // namespace
 
-LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds, Run& run) {
+LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
+                            Run& run) {
   LabelComplex result;
   Complex complex(samples, labels, seeds.size(), run);
   complex.link();
@@ -303,7 +307,8 @@ LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (complex.parent()[i] == i) ++piece_count[labels[i]];
 
-  Splitter(samples, labels, complex, result).split(seeds.size(), samples.total_area / static_cast<double>(seeds.size()));
+  Splitter(samples, labels, complex, result)
+      .split(seeds.size(), samples.total_area / static_cast<double>(seeds.size()));
 
   std::vector<Vec3> positions(seeds.begin(), seeds.end());
   for (const CellPiece& piece : result.pieces) positions.push_back(piece.centroid);
@@ -311,7 +316,8 @@ LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>
   result.triangles = dual.triangles;
   result.defects = dual.defects;
   for (std::size_t l = 0; l < seeds.size(); ++l)
-    if (complex.twice_euler()[l] != 2 * static_cast<std::int64_t>(piece_count[l])) result.defects.push_back({static_cast<Index>(l), static_cast<Index>(l)});
+    if (complex.twice_euler()[l] != 2 * static_cast<std::int64_t>(piece_count[l]))
+      result.defects.push_back({static_cast<Index>(l), static_cast<Index>(l)});
   std::sort(result.defects.begin(), result.defects.end());
   result.defects.erase(std::unique(result.defects.begin(), result.defects.end()), result.defects.end());
   return result;

@@ -13,31 +13,32 @@ namespace evenmesh {
 
 /// A connected piece of a cell that is not the cell's largest.
 struct CellPiece {
-  std::uint32_t label = 0;       ///< the cell it comes from
-  std::uint32_t new_label = 0;   ///< label it now has: a new one, or that of a neighbour when it is tiny
+  std::uint32_t label = 0;      ///< the cell it comes from
+  std::uint32_t new_label = 0;  ///< label it now has: a new one, or that of a neighbour when it is tiny
   double area = 0;
   Vec3 centroid;
 };
 
 /// The dual of a labelling.
 struct LabelComplex {
-  std::vector<Triangle> triangles;        ///< of labels, counter-clockwise from outside
-  std::size_t labels = 0;                 ///< labels in use, after splitting; new ones follow the given ones
-  std::vector<CellPiece> pieces;          ///< pieces that became cells of their own, in order of new label
-  std::int64_t surface_euler = 0;         ///< χ of the sampled surface; the mesh must have it (dust apart)
-  /// Where seeds are needed, sorted: pairs of labels whose cells meet along several arcs; (l, l) for a cell that is not a disk
-  /// or meets itself around a corner.
+  std::vector<Triangle> triangles;  ///< of labels, counter-clockwise from outside
+  std::size_t labels = 0;           ///< labels in use, after splitting; new ones follow the given ones
+  std::vector<CellPiece> pieces;    ///< pieces that became cells of their own, in order of new label
+  std::int64_t surface_euler = 0;   ///< χ of the sampled surface; the mesh must have it (dust apart)
+  /// Where seeds are needed, sorted: pairs of labels whose cells meet along several arcs; (l, l) for a cell that is not
+  /// a disk or meets itself around a corner.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> defects;
 };
 
 /// Connects the cells of `labels` (one per sample, below `seeds.size()`; changed where cells are split).
 ///
-/// Each crossing of a grid edge is one quad of the closed surface between inside and outside points; quads around a grid
-/// cube's loop of crossings meet in a corner. Three or more labels around a corner make a dual polygon. A label whose
-/// quads are not connected is split; a piece smaller than a tenth of a mean cell goes to a neighbour.
+/// Each crossing of a grid edge is one quad of the closed surface between inside and outside points; quads around a
+/// grid cube's loop of crossings meet in a corner. Three or more labels around a corner make a dual polygon. A label
+/// whose quads are not connected is split; a piece smaller than a tenth of a mean cell goes to a neighbour.
 ///
 /// Guarantee: without defects the triangles are a closed, oriented two-manifold with the topology of the sampled solid;
 /// same bits for any number of threads. Cost: about 60 ns per sample and core.
-LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds, Run& run);
+LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
+                            Run& run);
 
 }  // namespace evenmesh

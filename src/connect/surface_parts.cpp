@@ -31,7 +31,8 @@ SurfaceParts surface_parts(const SampleSet& samples, Run& run) {
 
 std::size_t drop_dust(SampleSet& samples, double least_area, Run& run) {
   const SurfaceParts parts = surface_parts(samples, run);
-  const auto dropped = static_cast<std::size_t>(std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < least_area; }));
+  const auto dropped = static_cast<std::size_t>(
+      std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < least_area; }));
   if (dropped == 0) return 0;
   std::uint32_t kept = 0;
   std::vector<SampleBlock> blocks;

@@ -40,7 +40,13 @@ BalanceOptions balance_options(const MeshOptions& options) {
 class Cells {
  public:
   Cells(SampleSet& samples, std::size_t count, const MeshOptions& options, Stages& stages, Report& report, Run& run)
-      : samples_(samples), count_(count), options_(options), stages_(stages), report_(report), run_(run), evaluator_(make_evaluator()) {}
+      : samples_(samples),
+        count_(count),
+        options_(options),
+        stages_(stages),
+        report_(report),
+        run_(run),
+        evaluator_(make_evaluator()) {}
 
   ConnectedCells result() {
     balance(count_);
@@ -67,7 +73,9 @@ class Cells {
 
   void settle(std::size_t effort = 1) {
     stages_.stage("balance", 0, [&] {
-      const auto result = optimize(*evaluator_, seeds_, {options_.optimizer == Optimizer::lloyd, effort * settling_evaluations, options_.tolerance}, run_);
+      const auto result =
+          optimize(*evaluator_, seeds_,
+                   {options_.optimizer == Optimizer::lloyd, effort * settling_evaluations, options_.tolerance}, run_);
       report_.energies.insert(report_.energies.end(), result.ratios.begin(), result.ratios.end());
     });
   }
@@ -98,7 +106,8 @@ class Cells {
     return list;
   }
 
-  /// Pieces of surface smaller than a cell cannot be meshed at this fineness; looked for only where cells stay unconnected.
+  /// Pieces of surface smaller than a cell cannot be meshed at this fineness; looked for only where cells stay
+  /// unconnected.
   bool clear_dust() {
     if (unconnected().empty()) return false;
     std::size_t dropped = 0;
@@ -108,7 +117,8 @@ class Cells {
     });
     if (dropped == 0) return false;
     report_.dropped_components += dropped;
-    if (samples_.size() < count_) throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
+    if (samples_.size() < count_)
+      throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
     refill_idle_seeds();
     settle();
     connect();
@@ -186,8 +196,10 @@ class Cells {
       const std::size_t found = defects().size();
       idle_rounds = 10 * found < 8 * fewest ? 0 : idle_rounds + 1;
       fewest = std::min(fewest, found);
-      if (!pinches_known) pinches = stages_.stage("connect", 0, [&] { return find_pinches(samples_, run_); }), pinches_known = true;
-      run_.log(fmt::format("mend {}: {} defects, {} seeds, {} balls, {} pinches", round, found, seeds_.size(), balls_.balls().size(), pinches.size()));
+      if (!pinches_known)
+        pinches = stages_.stage("connect", 0, [&] { return find_pinches(samples_, run_); }), pinches_known = true;
+      run_.log(fmt::format("mend {}: {} defects, {} seeds, {} balls, {} pinches", round, found, seeds_.size(),
+                           balls_.balls().size(), pinches.size()));
       const bool last_resort = round >= ball_rounds, seeds_are_idle = round >= seed_rounds || idle_rounds >= patience;
       if (seeds_are_idle) idle_rounds = patience;
       const Mending mending = plan(pinches, {.prefer_balls = seeds_are_idle, .seeds_only = last_resort});
@@ -287,8 +299,8 @@ class Cells {
 
 }  // namespace
 
-ConnectedCells balance_and_connect(SampleSet& samples, std::size_t count, const MeshOptions& options, Stages& stages, Report& report,
-                                   Run& run) {
+ConnectedCells balance_and_connect(SampleSet& samples, std::size_t count, const MeshOptions& options, Stages& stages,
+                                   Report& report, Run& run) {
   return Cells(samples, count, options, stages, report, run).result();
 }
 

@@ -10,16 +10,16 @@
 namespace evenmesh {
 
 struct ConnectedCells {
-  std::vector<Vec3> seeds;              ///< one per label
-  std::vector<std::uint32_t> labels;    ///< one per sample
-  std::vector<Triangle> triangles;      ///< of labels
+  std::vector<Vec3> seeds;            ///< one per label
+  std::vector<std::uint32_t> labels;  ///< one per sample
+  std::vector<Triangle> triangles;    ///< of labels
   bool two_manifold = false;
-  BallIndex balls{{}};                  ///< united with the solid where the grid could not tell its topology
+  BallIndex balls{{}};  ///< united with the solid where the grid could not tell its topology
 };
 
-/// Balances about `count` seeds on `samples` (dust is removed from them) and connects their cells; the report gets counts,
-/// energies and notices. The vertex count is met by starting with fewer seeds where thin walls split cells.
-ConnectedCells balance_and_connect(SampleSet& samples, std::size_t count, const MeshOptions& options, Stages& stages, Report& report,
-                                   Run& run);
+/// Balances about `count` seeds on `samples` (dust is removed from them) and connects their cells; the report gets
+/// counts, energies and notices. The vertex count is met by starting with fewer seeds where thin walls split cells.
+ConnectedCells balance_and_connect(SampleSet& samples, std::size_t count, const MeshOptions& options, Stages& stages,
+                                   Report& report, Run& run);
 
 }  // namespace evenmesh

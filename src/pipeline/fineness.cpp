@@ -16,7 +16,7 @@ namespace {
 constexpr double wanted_alpha = 100, least_alpha = 50;
 constexpr std::size_t most_cells = 8192;
 constexpr std::size_t scouting_cells = 96;
-constexpr std::size_t most_specks = 16;      ///< of a surface that is not taken for a fractal
+constexpr std::size_t most_specks = 16;     ///< of a surface that is not taken for a fractal
 constexpr double least_cells_across = 1.2;  ///< thinner parts may lie between the grid points
 
 struct Pairs {
@@ -58,8 +58,12 @@ double quantile(std::vector<std::pair<float, float>>& values, double share) {
 
 }  // namespace
 
-double edge_length_of(double area, double vertices) { return std::sqrt(2 * area / (std::numbers::sqrt3 * vertices)); }
-double vertices_of(double area, double edge_length) { return 2 * area / (std::numbers::sqrt3 * edge_length * edge_length); }
+double edge_length_of(double area, double vertices) {
+  return std::sqrt(2 * area / (std::numbers::sqrt3 * vertices));
+}
+double vertices_of(double area, double edge_length) {
+  return 2 * area / (std::numbers::sqrt3 * edge_length * edge_length);
+}
 
 SurfaceScale measure_scale(const SampleSet& coarse, Run& run) {
   std::vector<Pairs> of_chunk((coarse.blocks.size() + 63) / 64);
@@ -86,7 +90,8 @@ namespace {
 std::size_t count_specks(const SampleSet& samples, Run& run) {
   const double speck = 8 * samples.grid.spacing * samples.grid.spacing;
   const auto parts = surface_parts(samples, run);
-  return static_cast<std::size_t>(std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < speck; }));
+  return static_cast<std::size_t>(
+      std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < speck; }));
 }
 
 }  // namespace
@@ -106,7 +111,8 @@ SurfaceScale scout_scale(const Shape& shape, std::size_t finest, Run& run) {
   }
 }
 
-Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const MeshOptions& options, std::vector<Notice>& notices) {
+Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const MeshOptions& options,
+                         std::vector<Notice>& notices) {
   const double longest = bounds.longest_side();
   const auto resolution_for = [&](double samples) {  // cells along the longest side that give so many samples
     return longest / std::sqrt(scale.area * scale.samples_per_area / samples);
@@ -126,9 +132,11 @@ Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const Mes
     double edge = std::min(0.35 * scale.curvature_radius, 1.5 * scale.thickness);
     edge = std::clamp(edge, diagonal / 500, diagonal / 40);
     vertices = std::clamp(std::round(vertices_of(scale.area, edge)), 200.0, 1e6);
-    notices.push_back({false, fmt::format("no -n or -l given: {:.0f} vertices, from area {:.4g}, curvature radius {:.3g}, thinnest part {}",
-                                          vertices, scale.area, scale.curvature_radius,
-                                          std::isfinite(scale.thickness) ? fmt::format("{:.3g}", scale.thickness) : "not thin")});
+    notices.push_back(
+        {false,
+         fmt::format("no -n or -l given: {:.0f} vertices, from area {:.4g}, curvature radius {:.3g}, thinnest part {}",
+                     vertices, scale.area, scale.curvature_radius,
+                     std::isfinite(scale.thickness) ? fmt::format("{:.3g}", scale.thickness) : "not thin")});
   }
   vertices = std::max(vertices, 4.0);
 
@@ -137,20 +145,24 @@ Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const Mes
     resolution = static_cast<double>(*options.resolution);
   } else {
     resolution = resolution_for(wanted_alpha * 1.02 * vertices);
-    // Thin parts need grid points inside, as long as that costs no more than four times the samples. Where there is dust, thin
-    // parts are thin at every scale.
+    // Thin parts need grid points inside, as long as that costs no more than four times the samples. Where there is
+    // dust, thin parts are thin at every scale.
     if (std::isfinite(scale.thickness) && scale.thickness > 0 && scale.specks <= most_specks)
       resolution = std::clamp(2.5 * longest / scale.thickness, resolution, 2 * resolution);
     resolution = std::ceil(std::max(resolution, 24.0));
   }
   if (resolution > most_cells) {
-    notices.push_back({false, fmt::format("the grid ends at {} cells along the longest side: fewer than {} samples per seed", most_cells, wanted_alpha)});
+    notices.push_back(
+        {false, fmt::format("the grid ends at {} cells along the longest side: fewer than {} samples per seed",
+                            most_cells, wanted_alpha)});
     resolution = most_cells;
   }
   const double most_vertices = std::max(4.0, std::floor(samples_at(resolution) / least_alpha));
   if (vertices > most_vertices) {
-    notices.push_back({false, fmt::format("{:.0f} vertices would have fewer than {} samples each at resolution {:.0f}; meshing with {:.0f}", vertices,
-                                          least_alpha, resolution, most_vertices)});
+    notices.push_back(
+        {false,
+         fmt::format("{:.0f} vertices would have fewer than {} samples each at resolution {:.0f}; meshing with {:.0f}",
+                     vertices, least_alpha, resolution, most_vertices)});
     vertices = most_vertices;
   }
   return {static_cast<std::size_t>(vertices), static_cast<std::size_t>(resolution)};

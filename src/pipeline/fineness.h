@@ -15,12 +15,12 @@ struct SurfaceScale {
   std::size_t specks = 0;       ///< pieces of surface of a few grid cells: dust, as around fractals
 };
 
-/// Curvature from the change of normals between near samples, thickness from near samples that face away from each other
-/// through the solid. Only parts thinner than eight grid cells are seen as thin. Cost: O(samples).
+/// Curvature from the change of normals between near samples, thickness from near samples that face away from each
+/// other through the solid. Only parts thinner than eight grid cells are seen as thin. Cost: O(samples).
 SurfaceScale measure_scale(const SampleSet& coarse, Run& run);
 
-/// Samples the shape coarsely and measures it. A grid that is too coarse for thin parts sees holes in them, or nothing at all;
-/// then finer ones are tried, up to `finest` cells along the longest side (at least four times the coarsest).
+/// Samples the shape coarsely and measures it. A grid that is too coarse for thin parts sees holes in them, or nothing
+/// at all; then finer ones are tried, up to `finest` cells along the longest side (at least four times the coarsest).
 /// @throws UnusableInput  no surface within the bounds
 SurfaceScale scout_scale(const Shape& shape, std::size_t finest, Run& run);
 
@@ -30,12 +30,13 @@ double vertices_of(double area, double edge_length);
 
 struct Fineness {
   std::size_t vertices = 0;
-  std::size_t resolution = 0;    ///< grid cells along the longest side
+  std::size_t resolution = 0;  ///< grid cells along the longest side
 };
 
-/// Vertex count asked for, or estimated: edges turn by about 20° where the surface is curved most, and are no longer than
-/// thin parts are thick; the grid so that every seed has 100 samples and thin parts have cells inside.
-/// Adds notices where a wish had to be changed: at least 50 samples per seed (|S| ≤ |P|/α, [Raster2Mesh §4.1]).
-Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const MeshOptions& options, std::vector<Notice>& notices);
+/// Vertex count asked for, or estimated: edges turn by about 20° where the surface is curved most, and are no longer
+/// than thin parts are thick; the grid so that every seed has 100 samples and thin parts have cells inside. Adds
+/// notices where a wish had to be changed: at least 50 samples per seed (|S| ≤ |P|/α, [Raster2Mesh §4.1]).
+Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const MeshOptions& options,
+                         std::vector<Notice>& notices);
 
 }  // namespace evenmesh

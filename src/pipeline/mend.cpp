@@ -40,10 +40,17 @@ struct Cell {
 
 class Planner {
  public:
-  Planner(const SampleSet& samples, std::span<const std::uint32_t> labels, std::span<const Vec3> seeds, std::span<const Vec3> pinches,
-          const BallIndex& balls, const MendOptions& options)
-      : samples_(samples), labels_(labels), seeds_(seeds), pinch_points_(pinches), pinches_(pinches, options.edge), balls_(balls),
-        options_(options), cells_(seeds.size()), asked_(seeds.size(), 0) {
+  Planner(const SampleSet& samples, std::span<const std::uint32_t> labels, std::span<const Vec3> seeds,
+          std::span<const Vec3> pinches, const BallIndex& balls, const MendOptions& options)
+      : samples_(samples),
+        labels_(labels),
+        seeds_(seeds),
+        pinch_points_(pinches),
+        pinches_(pinches, options.edge),
+        balls_(balls),
+        options_(options),
+        cells_(seeds.size()),
+        asked_(seeds.size(), 0) {
     mending_.balls = balls.balls();
     grown_.assign(mending_.balls.size(), 0);
   }
@@ -146,12 +153,13 @@ class Planner {
 }  // namespace
 
 Mending plan_mending(const SampleSet& samples, std::span<const std::uint32_t> labels, std::span<const Vec3> seeds,
-                     std::span<const std::pair<std::uint32_t, std::uint32_t>> defects, std::span<const Vec3> pinches, const BallIndex& balls,
-                     const MendOptions& options) {
+                     std::span<const std::pair<std::uint32_t, std::uint32_t>> defects, std::span<const Vec3> pinches,
+                     const BallIndex& balls, const MendOptions& options) {
   return Planner(samples, labels, seeds, pinches, balls, options).plan(defects);
 }
 
-void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<const std::uint32_t> changed, double edge) {
+void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<const std::uint32_t> changed,
+                  double edge) {
   std::vector<char> is_changed(balls.balls().size(), 0);
   for (const std::uint32_t b : changed) is_changed[b] = 1;
   std::vector<Vec3> kept;
@@ -182,7 +190,8 @@ void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<co
   seeds = std::move(kept);
 }
 
-void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std::span<const std::uint32_t> labels, std::size_t count) {
+void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std::span<const std::uint32_t> labels,
+                         std::size_t count) {
   if (seeds.empty()) return;
   std::vector<double> area(seeds.size(), 0);
   for (std::size_t i = 0; i < labels.size(); ++i)

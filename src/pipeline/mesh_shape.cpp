@@ -22,18 +22,23 @@ namespace {
 
 void check(const MeshOptions& o) {
   if (o.vertices && o.edge_length) throw InvalidInput("give a vertex count or an edge length, not both");
-  if (o.vertices && (*o.vertices < 4 || *o.vertices > 1'000'000'000)) throw InvalidInput("the vertex count must lie in [4, 1e9]");
-  if (o.edge_length && !(*o.edge_length > 0 && std::isfinite(*o.edge_length))) throw InvalidInput("the edge length must be a number above 0");
-  if (o.resolution && (*o.resolution < 8 || *o.resolution > 8192)) throw InvalidInput("the resolution must lie in [8, 8192]");
+  if (o.vertices && (*o.vertices < 4 || *o.vertices > 1'000'000'000))
+    throw InvalidInput("the vertex count must lie in [4, 1e9]");
+  if (o.edge_length && !(*o.edge_length > 0 && std::isfinite(*o.edge_length)))
+    throw InvalidInput("the edge length must be a number above 0");
+  if (o.resolution && (*o.resolution < 8 || *o.resolution > 8192))
+    throw InvalidInput("the resolution must lie in [8, 8192]");
   if (o.iterations && *o.iterations > 10'000) throw InvalidInput("the iterations must lie in [0, 10000]");
   if (!(o.tolerance > 0 && o.tolerance < 1)) throw InvalidInput("the tolerance must lie in (0, 1)");
-  if (o.bounds && o.bounds->empty()) throw InvalidInput("the bounds are empty: each lower limit must be below its upper one");
+  if (o.bounds && o.bounds->empty())
+    throw InvalidInput("the bounds are empty: each lower limit must be below its upper one");
 }
 
 /// Onto the surface of the shape and the balls united with it.
 class RegularizedProjector : public Projector {
  public:
-  RegularizedProjector(std::unique_ptr<Projector> inner, const BallIndex& balls) : inner_(std::move(inner)), balls_(balls) {}
+  RegularizedProjector(std::unique_ptr<Projector> inner, const BallIndex& balls)
+      : inner_(std::move(inner)), balls_(balls) {}
   Vec3 project(const Vec3& p, double limit) const override {
     const Vec3 q = inner_ ? inner_->project(p, limit) : p, out = balls_.outside(q);
     if (out == q) return q;
@@ -51,7 +56,8 @@ class RegularizedProjector : public Projector {
       const Ball& ball = balls_.balls()[b];
       const Vec3 d = p - ball.center;
       const double length = norm(d), distance = length - ball.radius;
-      if (length > 0 && distance > 0 && distance < nearest) nearest = distance, best = ball.center + d * (ball.radius / length);
+      if (length > 0 && distance > 0 && distance < nearest)
+        nearest = distance, best = ball.center + d * (ball.radius / length);
     });
     return balls_.outside(best);
   }
@@ -62,7 +68,8 @@ class RegularizedProjector : public Projector {
 
 class Job {
  public:
-  Job(const Shape& shape, const MeshOptions& options, Run& run) : shape_(shape), options_(options), run_(run), stages_(run, report_) {}
+  Job(const Shape& shape, const MeshOptions& options, Run& run)
+      : shape_(shape), options_(options), run_(run), stages_(run, report_) {}
 
   MeshResult result() {
     sample();
@@ -78,12 +85,14 @@ class Job {
  private:
   void sample() {
     if (options_.bounds) {
-      if (const Mesh* mesh = shape_.mesh(); mesh == nullptr || !contains(*options_.bounds, shape_.bounds)) shape_.bounds = *options_.bounds;
+      if (const Mesh* mesh = shape_.mesh(); mesh == nullptr || !contains(*options_.bounds, shape_.bounds))
+        shape_.bounds = *options_.bounds;
     } else if (shape_.bounds.empty()) {
       shape_.bounds = stages_.stage("sample", 0, [&] { return find_bounds(*shape_.field()); });
     }
     const Box& bounds = shape_.bounds;
-    const SurfaceScale scale = stages_.stage("sample", 0.02, [&] { return scout_scale(shape_, options_.resolution.value_or(0), run_); });
+    const SurfaceScale scale =
+        stages_.stage("sample", 0.02, [&] { return scout_scale(shape_, options_.resolution.value_or(0), run_); });
     Fineness fineness = choose_fineness(scale, bounds, options_, report_.notices);
     sample_at(fineness.resolution);
     const double h = samples_.grid.spacing, expected = scale.area * scale.samples_per_area / (h * h);
@@ -96,12 +105,15 @@ class Job {
     report_.samples = samples_.size();
     report_.disagreements = samples_.disagreements;
     if (samples_.disagreements > 0)
-      notice(false, fmt::format("the input is not closed: inside or outside was settled by vote at {} grid points", samples_.disagreements));
-    if (samples_.cut_by_bounds && !shape_.capped_by_bounds) notice(false, "the solid leaves its bounds and is closed there");
+      notice(false, fmt::format("the input is not closed: inside or outside was settled by vote at {} grid points",
+                                samples_.disagreements));
+    if (samples_.cut_by_bounds && !shape_.capped_by_bounds)
+      notice(false, "the solid leaves its bounds and is closed there");
   }
 
   void sample_at(std::size_t resolution) {
-    samples_ = stages_.stage("sample", 0.1, [&] { return sample_shape(shape_, make_grid(shape_.bounds, resolution), run_); });
+    samples_ =
+        stages_.stage("sample", 0.1, [&] { return sample_shape(shape_, make_grid(shape_.bounds, resolution), run_); });
   }
 
   /// Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
@@ -121,10 +133,13 @@ class Job {
     stages_.stage("sample", 0, [&] {
       report_.dropped_components = drop_dust(samples_, samples_.total_area / static_cast<double>(vertices), run_);
     });
-    if (samples_.size() < vertices) throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
+    if (samples_.size() < vertices)
+      throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
   }
 
-  static bool contains(const Box& outer, const Box& inner) { return outer.contains(inner.lo) && outer.contains(inner.hi); }
+  static bool contains(const Box& outer, const Box& inner) {
+    return outer.contains(inner.lo) && outer.contains(inner.hi);
+  }
 
   /// Vertices from cells, onto the surface; labels without triangles are left out.
   Mesh place(const ConnectedCells& cells) {
@@ -146,10 +161,12 @@ class Job {
     edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
     if (options_.placement != Placement::centroid) {
       projector_ = make_projector(shape_, shape_.bounds, run_);
-      if (!cells.balls.balls().empty()) projector_ = std::make_unique<RegularizedProjector>(std::move(projector_), cells.balls);
+      if (!cells.balls.balls().empty())
+        projector_ = std::make_unique<RegularizedProjector>(std::move(projector_), cells.balls);
       if (projector_)
         parallel_for(run_, mesh.vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t v = begin; v < end; ++v) mesh.vertices[v] = projector_->project(mesh.vertices[v], 0.5 * edge_);
+          for (std::size_t v = begin; v < end; ++v)
+            mesh.vertices[v] = projector_->project(mesh.vertices[v], 0.5 * edge_);
         });
     }
     return mesh;
@@ -179,17 +196,27 @@ class Job {
     report_.seeds = q.vertices;
     report_.alpha = static_cast<double>(report_.samples) / static_cast<double>(std::max<std::size_t>(1, q.vertices));
     report_.evaluations = report_.energies.size();
-    if (q.faces == 0) throw UnusableInput("no piece of the surface is large enough for this fineness: ask for more vertices");
+    if (q.faces == 0)
+      throw UnusableInput("no piece of the surface is large enough for this fineness: ask for more vertices");
     if (report_.dropped_components > 0)
       notice(false, fmt::format("{} pieces of surface smaller than a cell were left out", report_.dropped_components));
+    if (const std::size_t balls = cells_.balls.balls().size(); balls > 0)
+      notice(false,
+             fmt::format("the surface comes closer to itself than the grid can tell, or ends in detail that it cannot: "
+                         "{} balls of half an edge or more were united with the solid there",
+                         balls));
     if (!two_manifold || !q.closed() || !q.two_manifold() || !q.oriented())
-      notice(true, fmt::format("the mesh is not a closed two-manifold: {} boundary and {} non-manifold edges; ask for more vertices",
-                               q.boundary_edges, q.non_manifold_edges));
+      notice(true,
+             fmt::format(
+                 "the mesh is not a closed two-manifold: {} boundary and {} non-manifold edges; ask for more vertices",
+                 q.boundary_edges, q.non_manifold_edges));
     if (report_.self_intersections > 0)
-      notice(true, fmt::format("{} pairs of triangles intersect each other; ask for more vertices", report_.self_intersections));
+      notice(true, fmt::format("{} pairs of triangles intersect each other; ask for more vertices",
+                               report_.self_intersections));
     const double asked = static_cast<double>(report_.seeds_asked), made = static_cast<double>(q.vertices);
     if (std::abs(made - asked) > 0.005 * asked)
-      notice(false, fmt::format("{:.0f} vertices instead of {:.0f}: the topology {}", made, asked, made > asked ? "needs more" : "leaves room for fewer"));
+      notice(false, fmt::format("{:.0f} vertices instead of {:.0f}: the topology {}", made, asked,
+                                made > asked ? "needs more" : "leaves room for fewer"));
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     report_.peak_memory_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;

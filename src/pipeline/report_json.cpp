@@ -26,7 +26,8 @@ std::string report_json(const Report& r) {
   for (const auto& [stage, seconds] : r.seconds) json["seconds"][stage] = seconds;
   json["peak_memory_bytes"] = r.peak_memory_bytes;
   json["notices"] = nlohmann::ordered_json::array();
-  for (const Notice& notice : r.notices) json["notices"].push_back({{"promise_broken", notice.promise_broken}, {"text", notice.text}});
+  for (const Notice& notice : r.notices)
+    json["notices"].push_back({{"promise_broken", notice.promise_broken}, {"text", notice.text}});
   return json.dump(2);
 }
 

@@ -65,7 +65,8 @@ struct Patch {
   std::vector<char> movable;
 };
 
-/// The knot around pairs[first]: its pairs are those that share vertices, one ring included, with others of it; they are taken off.
+/// The knot around pairs[first]: its pairs are those that share vertices, one ring included, with others of it; they
+/// are taken off.
 Patch take_knot(const Mesh& mesh, Pairs& pairs) {
   std::vector<char> in(mesh.vertices.size(), 0);
   Pairs knot{pairs.front()};
