@@ -59,7 +59,7 @@ Stage set_up(const Mesh& mesh, const LitMesh& lit, const RenderOptions& options,
   stage.wire_width = std::clamp(edge / 16, 0.8, 1.3) * std::max(1.0, options.height / 1400.0);
   if (!options.quality_colours) {
     stage.vertices = measure_topology(mesh).vertices;
-    stage.dot_radius = std::clamp(0.17 * edge, 1.0, 0.007 * std::min(options.width, options.height));
+    stage.dot_radius = std::clamp(0.17 * edge, 1.0, std::max(1.0, 0.007 * std::min(options.width, options.height)));
     stage.dot_opacity = 0.95 * std::clamp((edge - 2.5) / 6, 0.15, 1.0);
   }
   return stage;

@@ -142,7 +142,9 @@ TEST(Layering, EveryHeaderIsGuardedAndNoFileIsTooLong) {
       EXPECT_LE(lines, 500u) << file;
       // Highway compiles "-inl.h" files once per instruction set; they guard themselves.
       const bool many_times = file.filename().string().ends_with("-inl.h");
-      if (file.extension() == ".h" && !many_times) EXPECT_EQ(first, "#pragma once") << file;
+      if (file.extension() == ".h" && !many_times) {
+        EXPECT_EQ(first, "#pragma once") << file;
+      }
     }
   }
 }
