@@ -197,7 +197,7 @@ class Union {
       if (farthest <= t) break;
       t = farthest, moved = true;
     }
-    if (t >= 1 || (old == none && !moved)) t = std::min(t, 1.0), normal = step / h;
+    if (t >= 1 || (old == none && !moved)) t = std::min(t, 0.999), normal = step / h;  // the border cuts the ball
     const Vec3 p = from + t * step - center;
     const bool keep = old != none && !moved;
     out.x.push_back(keep ? samples_.x[old] : static_cast<float>(p.x));

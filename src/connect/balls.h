@@ -40,7 +40,8 @@ class BallIndex {
           if (const auto it = cells_.find(key(i, j, k)); it != cells_.end())
             for (const std::uint32_t b : it->second) visit(b);
   }
-  /// The point itself, or, when it lies in balls, the nearest way out that a few steps find.
+  /// The point itself, or, when it lies in balls, the nearest way out that a few steps find: in a crease to a
+  /// thousandth of the radius.
   Vec3 outside(Vec3 p) const;
 
  private:
