@@ -2,45 +2,84 @@
 
 #include <algorithm>
 
+#include "core/parallel.h"
 #include "evenmesh/error.h"
-#include "sample/morton.h"
 
 namespace evenmesh {
-std::vector<CubeBrick> cube_bricks(const SampleSet& samples) {
-  std::vector<std::uint64_t> keys(samples.blocks.size());  // ascending, as the blocks are
-  for (std::size_t b = 0; b < keys.size(); ++b) {
-    const auto& brick = samples.blocks[b].brick;
-    keys[b] = morton_code(brick[0], brick[1], brick[2]);
-  }
-  const auto find = [&](int x, int y, int z) {
-    const std::uint64_t key = morton_code(x, y, z);
-    const auto it = std::lower_bound(keys.begin(), keys.end(), key);
-    return it != keys.end() && *it == key ? it - keys.begin() : std::int64_t{-1};
-  };
+namespace {
 
-  // In the order of the blocks; a brick without samples of its own comes with the first block that has it as lower
-  // neighbour.
-  std::vector<CubeBrick> bricks;
-  bricks.reserve(samples.blocks.size() * 5 / 4);
-  for (std::size_t b = 0; b < samples.blocks.size(); ++b) {
-    const auto& at = samples.blocks[b].brick;
-    for (int shift = 0; shift < 8; ++shift) {
-      const int x = at[0] - (shift & 1), y = at[1] - (shift >> 1 & 1), z = at[2] - (shift >> 2);
-      if (x < 0 || y < 0 || z < 0) continue;
-      CubeBrick brick;
-      brick.at = {x, y, z};
-      for (int d = 0; d < 8; ++d) brick.block[d] = find(x + (d & 1), y + (d >> 1 & 1), z + (d >> 2));
-      if (shift == 0) {
-        bricks.push_back(brick);
-        continue;
-      }
-      if (brick.block[0] >= 0) continue;
-      const std::int64_t first = *std::min_element(brick.block.begin(), brick.block.end(), [](auto p, auto q) {
-        return static_cast<std::uint64_t>(p) < static_cast<std::uint64_t>(q);
-      });
-      if (first == static_cast<std::int64_t>(b)) bricks.push_back(brick);
+/// Blocks by the coordinates of their brick: open addressing in a table that is at most half full.
+class BlockTable {
+ public:
+  explicit BlockTable(const SampleSet& samples) : samples_(samples) {
+    std::size_t slots = 16;
+    while (slots < 2 * samples.blocks.size()) slots *= 2;
+    mask_ = slots - 1;
+    block_.assign(slots, none);
+    for (std::uint32_t b = 0; b < samples.blocks.size(); ++b) {
+      const auto& at = samples.blocks[b].brick;
+      std::size_t slot = first_slot(at[0], at[1], at[2]);
+      while (block_[slot] != none) slot = (slot + 1) & mask_;
+      block_[slot] = b;
     }
   }
+  /// −1: there is none.
+  std::int64_t find(int x, int y, int z) const {
+    if (x < 0 || y < 0 || z < 0) return -1;
+    for (std::size_t slot = first_slot(x, y, z); block_[slot] != none; slot = (slot + 1) & mask_) {
+      const auto& at = samples_.blocks[block_[slot]].brick;
+      if (at[0] == x && at[1] == y && at[2] == z) return block_[slot];
+    }
+    return -1;
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffffu;
+  /// Rows of bricks stay together in memory.
+  std::size_t first_slot(int x, int y, int z) const {
+    const std::uint64_t row = static_cast<std::uint64_t>(y) << 16 | static_cast<std::uint64_t>(z);
+    return ((row * 0x9e3779b97f4a7c15ull >> 24) + static_cast<std::uint64_t>(x)) & mask_;
+  }
+
+  const SampleSet& samples_;
+  std::size_t mask_ = 0;
+  std::vector<std::uint32_t> block_;
+};
+
+/// The bricks around block b that come with it: its own, and those without samples whose first block it is.
+void bricks_of_block(const SampleSet& samples, const BlockTable& table, std::size_t b, std::vector<CubeBrick>& bricks) {
+  const auto& at = samples.blocks[b].brick;
+  std::array<std::int64_t, 27> around;  // [x + 3·y + 9·z], the block itself in the middle
+  for (int i = 0; i < 27; ++i) around[i] = table.find(at[0] - 1 + i % 3, at[1] - 1 + i / 3 % 3, at[2] - 1 + i / 9);
+  for (int shift = 0; shift < 8; ++shift) {
+    const int sx = shift & 1, sy = shift >> 1 & 1, sz = shift >> 2;
+    CubeBrick brick;
+    brick.at = {at[0] - sx, at[1] - sy, at[2] - sz};
+    if (brick.at[0] < 0 || brick.at[1] < 0 || brick.at[2] < 0) continue;
+    std::int64_t first = -1;
+    for (int d = 0; d < 8; ++d) {
+      const int x = 1 - sx + (d & 1), y = 1 - sy + (d >> 1 & 1), z = 1 - sz + (d >> 2);
+      brick.block[d] = around[x + 3 * y + 9 * z];
+      if (brick.block[d] >= 0 && (first < 0 || brick.block[d] < first)) first = brick.block[d];
+    }
+    if (shift == 0 || (brick.block[0] < 0 && first == static_cast<std::int64_t>(b))) bricks.push_back(brick);
+  }
+}
+
+}  // namespace
+
+std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const Run& run) {
+  constexpr std::size_t piece = 1024;
+  const BlockTable table(samples);
+  std::vector<std::vector<CubeBrick>> of_piece((samples.blocks.size() + piece - 1) / piece);
+  parallel_tasks(run, of_piece.size(), [&](std::size_t p) {
+    of_piece[p].reserve(piece * 5 / 4);
+    for (std::size_t b = p * piece; b < std::min(samples.blocks.size(), (p + 1) * piece); ++b)
+      bricks_of_block(samples, table, b, of_piece[p]);
+  });
+  std::vector<CubeBrick> bricks;
+  bricks.reserve(samples.blocks.size() * 5 / 4);
+  for (const auto& list : of_piece) bricks.insert(bricks.end(), list.begin(), list.end());
   return bricks;
 }
 

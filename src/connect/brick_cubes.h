@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "connect/cube_table.h"
+#include "evenmesh/run.h"
 #include "sample/sample_set.h"
 
 namespace evenmesh {
@@ -16,8 +17,9 @@ struct CubeBrick {
   std::array<int, 3> at{};  ///< brick coordinates
 };
 
-/// All bricks with a crossed cube, in a fixed order.
-std::vector<CubeBrick> cube_bricks(const SampleSet& samples);
+/// All bricks with a crossed cube, in the order of the blocks; a brick without samples of its own comes with the first
+/// block that has it as a lower neighbour.
+std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const Run& run);
 
 /// Finds the loops of one brick's cubes; reusable, one per thread.
 class CubeWalker {

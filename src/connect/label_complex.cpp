@@ -22,7 +22,7 @@ class Complex {
       : samples_(samples),
         labels_(labels),
         run_(run),
-        bricks_(cube_bricks(samples)),
+        bricks_(cube_bricks(samples, run)),
         parent_(samples.size()),
         polygons_(bricks_.size()),
         cross_links_(bricks_.size()),
@@ -57,6 +57,8 @@ class Complex {
   }
 
   std::vector<Index>& parent() { return parent_; }
+  /// One sample of every connected piece of a label, ascending.
+  const std::vector<Index>& roots() const { return roots_; }
   const std::vector<CubeBrick>& bricks() const { return bricks_; }
   const std::vector<std::vector<Index>>& polygons() const { return polygons_; }
   /// Twice the Euler number (with compact support) of the interior of a label's quads; 2 per disk.
@@ -79,25 +81,31 @@ class Complex {
     const auto own = [&](Index s) { return s >= own_begin && s < own_end; };
     for (Index s = own_begin; s < own_end; ++s) tally.twice_euler[labels_[s]] += 2;
     auto& cross = cross_links_[b];
+    const auto join = [&](Index s, Index t) {
+      if (own(s) && own(t)) {
+        if (parent_[s] != parent_[t]) unite(parent_, s, t);
+      } else {
+        cross.push_back({s, t});
+      }
+    };
+    // Every link is met twice, from the cubes on both sides of the face, and counts −1 each time.
     tally.walker.walk(bricks_[b], [&](const Index* loop, int n) {
       ++tally.loops;
+      const Index label = labels_[loop[0]];
       bool uniform = true;
+      for (int i = 1; i < n; ++i) uniform &= labels_[loop[i]] == label;
+      if (uniform) {
+        tally.twice_euler[label] += 2 - n;
+        for (int i = 1; i < n; ++i) join(loop[i - 1], loop[i]);
+        return;
+      }
       for (int i = 0; i < n; ++i) {
         const Index s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
-        if (labels_[s] != labels_[t]) {
-          uniform = false;
-          continue;
-        }
-        --tally.twice_euler[labels_[s]];  // every link is met twice, from the cubes on both sides of the face
-        if (own(s) && own(t))
-          unite(parent_, s, t);
-        else if (cross.empty() || cross.back() != std::pair{s, t})
-          cross.push_back({s, t});
+        if (labels_[s] != labels_[t]) continue;
+        --tally.twice_euler[labels_[s]];
+        join(s, t);
       }
-      if (uniform)
-        tally.twice_euler[labels_[loop[0]]] += 2;
-      else
-        add_polygon(b, loop, n);
+      add_polygon(b, loop, n);
     });
   }
 
@@ -124,25 +132,38 @@ class Complex {
     });
     parallel_for(run_, bricks_.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
+        // Few roots meet in one brick: looking through the pairs found so far, the latest first, is fast.
         auto& cross = cross_links_[b];
-        for (auto& [s, t] : cross) {
-          s = parent_[s], t = parent_[t];
-          if (s > t) std::swap(s, t);
+        auto last = cross.begin();
+        for (const auto& [s, t] : cross) {
+          const std::pair<Index, Index> pair = std::minmax({parent_[s], parent_[t]});
+          if (pair.first == pair.second) continue;
+          if (std::find(std::make_reverse_iterator(last), cross.rend(), pair) == cross.rend()) *last++ = pair;
         }
-        std::sort(cross.begin(), cross.end());
-        cross.erase(std::unique(cross.begin(), cross.end()), cross.end());
+        cross.erase(last, cross.end());
       }
     });
     for (const auto& cross : cross_links_)
       for (const auto& [s, t] : cross) unite(parent_, s, t);
     cross_links_.clear();
+    collect_roots();
+  }
+
+  void collect_roots() {
+    constexpr std::size_t piece = 1 << 16;
+    std::vector<std::vector<Index>> of_piece((samples_.size() + piece - 1) / piece);
+    parallel_tasks(run_, of_piece.size(), [&](std::size_t p) {
+      for (std::size_t i = p * piece; i < std::min(samples_.size(), (p + 1) * piece); ++i)
+        if (parent_[i] == i) of_piece[p].push_back(static_cast<Index>(i));
+    });
+    for (const auto& list : of_piece) roots_.insert(roots_.end(), list.begin(), list.end());
   }
 
   const SampleSet& samples_;
   std::vector<Index>& labels_;
   Run& run_;
   std::vector<CubeBrick> bricks_;
-  std::vector<Index> parent_;
+  std::vector<Index> parent_, roots_;
   std::vector<std::vector<Index>> polygons_;
   std::vector<std::vector<std::pair<Index, Index>>> cross_links_;
   std::vector<std::int64_t> euler_;
@@ -156,18 +177,15 @@ struct Piece {
 };
 
 /// All pieces of the labels that have several, by label, the largest first.
-std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels,
-                                          std::vector<Index>& parent, std::size_t label_count,
-                                          std::vector<Index>& piece_count) {
-  piece_count.assign(label_count, 0);
-  for (std::size_t i = 0; i < parent.size(); ++i)
-    if (parent[i] == i) ++piece_count[labels[i]];
+std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels, Complex& complex,
+                                          const std::vector<Index>& piece_count) {
+  auto& parent = complex.parent();
   std::vector<Piece> pieces;
   std::vector<std::pair<Index, Index>> piece_of_root;  // (root, index into pieces), ascending
-  for (std::size_t i = 0; i < parent.size(); ++i)
-    if (parent[i] == i && piece_count[labels[i]] > 1) {
-      piece_of_root.push_back({static_cast<Index>(i), static_cast<Index>(pieces.size())});
-      pieces.push_back({static_cast<Index>(i), labels[i], 0, {}});
+  for (const Index root : complex.roots())
+    if (piece_count[labels[root]] > 1) {
+      piece_of_root.push_back({root, static_cast<Index>(pieces.size())});
+      pieces.push_back({root, labels[root], 0, {}});
     }
   if (pieces.empty()) return pieces;
   for (const SampleBlock& block : samples.blocks) {
@@ -194,9 +212,10 @@ class Splitter {
   Splitter(const SampleSet& samples, std::vector<Index>& labels, Complex& complex, LabelComplex& result)
       : samples_(samples), labels_(labels), complex_(complex), result_(result) {}
 
-  void split(std::size_t given_labels, double mean_cell) {
-    std::vector<Index> piece_count;
-    pieces_ = pieces_of_split_labels(samples_, labels_, complex_.parent(), given_labels, piece_count);
+  /// @param piece_count  by given label
+  void split(const std::vector<Index>& piece_count, double mean_cell) {
+    const std::size_t given_labels = piece_count.size();
+    pieces_ = pieces_of_split_labels(samples_, labels_, complex_, piece_count);
     result_.labels = given_labels;
     if (pieces_.empty()) return;
     std::vector<std::pair<Index, Index>> label_of_root, tiny;
@@ -210,7 +229,7 @@ class Splitter {
       }
       give_new_label(piece, label_of_root);
     }
-    adopt_tiny(tiny, label_of_root);
+    adopt_tiny(tiny, piece_count, label_of_root);
     relabel(piece_count, label_of_root);
   }
 
@@ -222,7 +241,8 @@ class Splitter {
   }
 
   /// Counts the links of tiny pieces to other roots and hands each over to the most linked one.
-  void adopt_tiny(std::vector<std::pair<Index, Index>>& tiny, std::vector<std::pair<Index, Index>>& label_of_root) {
+  void adopt_tiny(std::vector<std::pair<Index, Index>>& tiny, const std::vector<Index>& piece_count,
+                  std::vector<std::pair<Index, Index>>& label_of_root) {
     if (tiny.empty()) return;
     std::sort(tiny.begin(), tiny.end());
     std::vector<char> block_tiny(samples_.blocks.size(), 0);
@@ -233,7 +253,7 @@ class Splitter {
     };
     for (std::size_t b = 0; b < samples_.blocks.size(); ++b)
       for (Index i = samples_.blocks[b].begin; i < samples_.blocks[b].end && !block_tiny[b]; ++i)
-        block_tiny[b] = is_tiny(find_root(parent, i));
+        block_tiny[b] = piece_count[labels_[i]] > 1 && is_tiny(find_root(parent, i));
     std::vector<char> brick_dirty(complex_.bricks().size(), 0);
     std::vector<std::pair<Index, Index>> links;  // (tiny root, other root)
     CubeWalker walker(samples_);
@@ -304,11 +324,9 @@ LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>
   complex.link();
   result.surface_euler = complex.surface_euler();
   std::vector<Index> piece_count(seeds.size(), 0);
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    if (complex.parent()[i] == i) ++piece_count[labels[i]];
-
+  for (const Index root : complex.roots()) ++piece_count[labels[root]];
   Splitter(samples, labels, complex, result)
-      .split(seeds.size(), samples.total_area / static_cast<double>(seeds.size()));
+      .split(piece_count, samples.total_area / static_cast<double>(seeds.size()));
 
   std::vector<Vec3> positions(seeds.begin(), seeds.end());
   for (const CellPiece& piece : result.pieces) positions.push_back(piece.centroid);

@@ -25,7 +25,7 @@ bool has_diagonal_face(unsigned corners) {
 std::vector<Vec3> find_pinches(const SampleSet& samples, Run& run) {
   std::array<bool, 256> pinched{};
   for (unsigned c = 0; c < 256; ++c) pinched[c] = has_diagonal_face(c);
-  const auto bricks = cube_bricks(samples);
+  const auto bricks = cube_bricks(samples, run);
   std::vector<std::vector<Vec3>> of_brick(bricks.size());
   tbb::enumerable_thread_specific<CubeWalker> walkers([&] { return CubeWalker(samples); });
   parallel_for(run, bricks.size(), 64, [&](std::size_t begin, std::size_t end) {

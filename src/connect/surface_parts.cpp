@@ -11,7 +11,7 @@ SurfaceParts surface_parts(const SampleSet& samples, Run& run) {
   std::vector<std::uint32_t> parent(samples.size());
   for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = static_cast<std::uint32_t>(i);
   CubeWalker walker(samples);
-  for (const CubeBrick& brick : cube_bricks(samples)) {
+  for (const CubeBrick& brick : cube_bricks(samples, run)) {
     run.throw_if_cancelled();
     walker.walk(brick, [&](const std::uint32_t* loop, int n) {
       for (int i = 1; i < n; ++i) unite(parent, loop[0], loop[i]);

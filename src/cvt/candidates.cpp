@@ -4,15 +4,13 @@
 #include <cmath>
 
 namespace evenmesh {
-namespace {
 
 /// Seeds in a uniform grid of cubic cells, in counting-sorted order.
 class SeedGrid {
  public:
-  SeedGrid(std::span<const Vec3> seeds, double total_area) {
+  SeedGrid(std::span<const Vec3> seeds, double spacing) {
     Box box;
     for (const Vec3& s : seeds) box.add(s);
-    const double spacing = std::sqrt(total_area / static_cast<double>(seeds.size()));
     cell_ = std::max(1.5 * spacing, 1e-3 * box.longest_side() + 1e-300);
     origin_ = box.lo;
     for (int a = 0; a < 3; ++a) size_[a] = static_cast<int>(box.size()[a] / cell_) + 1;
@@ -63,6 +61,8 @@ class SeedGrid {
   std::vector<Vec3> position_;
 };
 
+namespace {
+
 /// The seeds around a chunk of blocks, and those of them that matter to one block.
 class ChunkSeeds {
  public:
@@ -97,10 +97,8 @@ class ChunkSeeds {
     const SeedsInReach found = seeds_in_reach(at, radius, near_x_.data(), near_y_.data(), near_z_.data(),
                                               near_margin_.data(), near_.size(), scratch_.data(), hits_.data());
     const double needed = static_cast<double>(found.limit) + largest_margin_;
-    if (needed > reach_ && near_.size() < seeds_.size()) {
-      needed_ = near_.size() < 2 ? 2 * reach_ + grid_.cell() : needed;
-      return false;
-    }
+    needed_ = near_.size() < 2 ? 2 * reach_ + grid_.cell() : needed;
+    if (needed > reach_ && near_.size() < seeds_.size()) return false;
     const std::size_t count = found.count, capacity = (count + 7) / 8 * 8;
     for (auto* array : {&x_, &y_, &z_, &margin_}) array->resize(capacity);
     seed_.resize(count);
@@ -115,6 +113,7 @@ class ChunkSeeds {
     list.insert(list.end(), seed_.begin(), seed_.begin() + static_cast<std::ptrdiff_t>(kept));
     return true;
   }
+  /// How far from the centre of the block asked for last there may be seeds that matter to it.
   double needed() const { return needed_; }
 
  private:
@@ -147,59 +146,101 @@ std::vector<BlockBox> block_boxes(const SampleSet& samples, const Run& run) {
 CandidateLists::CandidateLists(const SampleSet& samples, const Run& run)
     : samples_(samples),
       boxes_(block_boxes(samples, run)),
-      lists_((samples.blocks.size() + chunk - 1) / chunk),
+      chunks_((samples.blocks.size() + chunk - 1) / chunk),
+      reach_(samples.blocks.size()),
       offsets_(samples.blocks.size()),
       counts_(samples.blocks.size()) {}
 
-bool CandidateLists::still_valid(std::span<const Vec3> seeds) const {
-  if (seeds_at_build_.size() != seeds.size()) return false;
-  for (std::size_t i = 0; i < seeds.size(); ++i)
-    if (squared_norm(seeds[i] - seeds_at_build_[i]) > static_cast<double>(margins_[i]) * margins_[i]) return false;
-  return true;
+bool CandidateLists::is_valid_for(std::size_t seed, const Vec3& at) const {
+  return squared_norm(at - seeds_at_build_[seed]) <= static_cast<double>(margins_[seed]) * margins_[seed];
 }
 
-void CandidateLists::set_margins(std::span<const Vec3> seeds) {
-  const double spacing = std::sqrt(samples_.total_area / static_cast<double>(seeds.size()));
-  const bool moved = last_seeds_.size() == seeds.size();
-  margins_.resize(seeds.size());
-  for (std::size_t i = 0; i < seeds.size(); ++i) {
-    const double step = moved ? 3 * norm(seeds[i] - last_seeds_[i]) : 0;
-    margins_[i] = static_cast<float>(std::clamp(step, 0.05 * spacing, 0.5 * spacing));
-  }
+float CandidateLists::margin(std::size_t seed, const Vec3& at, double spacing) const {
+  const double step = last_seeds_.empty() ? 0 : 3 * norm(at - last_seeds_[seed]);
+  return static_cast<float>(std::clamp(step, 0.12 * spacing, 0.5 * spacing));
 }
 
 void CandidateLists::update(std::span<const Vec3> seeds, const Run& run) {
-  if (still_valid(seeds)) {
-    last_seeds_.assign(seeds.begin(), seeds.end());
-    return;
-  }
-  set_margins(seeds);
-  seeds_at_build_.assign(seeds.begin(), seeds.end());
-  last_seeds_ = seeds_at_build_;
-  const float largest_margin = *std::max_element(margins_.begin(), margins_.end());
-  const SeedGrid grid(seeds, samples_.total_area);
   const double spacing = std::sqrt(samples_.total_area / static_cast<double>(seeds.size()));
-  parallel_tasks(run, lists_.size(), [&](std::size_t c) {
-    const std::size_t first = c * chunk, last = std::min((c + 1) * chunk, boxes_.size());
-    ChunkSeeds near(grid, seeds, margins_, largest_margin);
-    Box all;
-    double radius = 0;
-    for (std::size_t b = first; b < last; ++b) {
-      const BlockBox& box = boxes_[b];
-      const Vec3 half{box.half[0], box.half[1], box.half[2]};
-      all.add(samples_.block_center(samples_.blocks[b]) + Vec3{box.center[0], box.center[1], box.center[2]});
-      radius = std::max(radius, norm(half));
-    }
-    near.collect(all, 1.2 * spacing + 2 * radius + 2 * static_cast<double>(largest_margin));
-    lists_[c].clear();
-    for (std::size_t b = first; b < last; ++b) {
-      const std::size_t before = lists_[c].size();
-      while (!near.candidates(samples_.block_center(samples_.blocks[b]), boxes_[b], lists_[c]))
-        near.collect(all, near.needed());
-      offsets_[b] = static_cast<std::uint32_t>(before);
-      counts_[b] = static_cast<std::uint32_t>(lists_[c].size() - before);
-    }
+  if (last_seeds_.size() != seeds.size()) seeds_at_build_.clear(), last_seeds_.clear();
+  std::vector<std::uint32_t> strayed;
+  for (std::size_t i = 0; i < seeds_at_build_.size(); ++i)
+    if (!is_valid_for(i, seeds[i])) strayed.push_back(static_cast<std::uint32_t>(i));
+  if (seeds_at_build_.empty() || 8 * strayed.size() > seeds.size()) {
+    build_all(seeds, spacing, run);
+  } else if (!strayed.empty()) {
+    build_around(strayed, seeds, spacing, run);
+  }
+  last_seeds_.assign(seeds.begin(), seeds.end());
+}
+
+void CandidateLists::build_all(std::span<const Vec3> seeds, double spacing, const Run& run) {
+  margins_.resize(seeds.size());
+  for (std::size_t i = 0; i < seeds.size(); ++i) margins_[i] = margin(i, seeds[i], spacing);
+  largest_margin_ = *std::max_element(margins_.begin(), margins_.end());
+  seeds_at_build_.assign(seeds.begin(), seeds.end());
+  const SeedGrid grid(seeds_at_build_, spacing);
+  parallel_tasks(run, chunks_.size(), [&](std::size_t c) {
+    std::array<bool, chunk> all;
+    all.fill(true);
+    build_chunk(c, all, grid, spacing);
   });
+}
+
+/// Lists in which none of the strayed seeds was or can be now stay as they are: there, the others have kept within
+/// their margins.
+void CandidateLists::build_around(std::span<const std::uint32_t> strayed, std::span<const Vec3> seeds, double spacing,
+                                  const Run& run) {
+  std::vector<Vec3> places;
+  for (const std::uint32_t i : strayed) {
+    places.push_back(seeds_at_build_[i]), places.push_back(seeds[i]);
+    margins_[i] = std::min(margin(i, seeds[i], spacing), largest_margin_);
+    seeds_at_build_[i] = seeds[i];
+  }
+  const SeedGrid grid(seeds_at_build_, spacing), changed(places, spacing);
+  parallel_tasks(run, chunks_.size(), [&](std::size_t c) {
+    std::array<bool, chunk> stale{};
+    bool any = false;
+    changed.visit_box(chunks_[c].region, [&](std::uint32_t, const Vec3& p) {
+      if (!chunks_[c].region.contains(p)) return;
+      for (std::size_t b = c * chunk; b < end_of_chunk(c); ++b)
+        if (squared_norm(p - center(b)) <= double(reach_[b]) * reach_[b]) stale[b - c * chunk] = any = true;
+    });
+    if (any) build_chunk(c, stale, grid, spacing);
+  });
+}
+
+/// The lists of those blocks of a chunk that are stale.
+void CandidateLists::build_chunk(std::size_t c, const std::array<bool, chunk>& stale, const SeedGrid& grid,
+                                 double spacing) {
+  const std::size_t first = c * chunk, last = end_of_chunk(c);
+  Box centers;
+  double radius = 0;
+  for (std::size_t b = first; b < last; ++b) {
+    if (!stale[b - first]) continue;
+    centers.add(center(b));
+    radius = std::max(radius, norm({boxes_[b].half[0], boxes_[b].half[1], boxes_[b].half[2]}));
+  }
+  ChunkSeeds near(grid, seeds_at_build_, margins_, largest_margin_);
+  near.collect(centers, 1.2 * spacing + 2 * radius + 2 * static_cast<double>(largest_margin_));
+  std::vector<std::uint32_t> list;
+  Box region;
+  for (std::size_t b = first; b < last; ++b) {
+    const auto before = static_cast<std::uint32_t>(list.size());
+    if (stale[b - first]) {
+      while (!near.candidates(samples_.block_center(samples_.blocks[b]), boxes_[b], list))
+        near.collect(centers, near.needed());
+      reach_[b] = static_cast<float>(near.needed() * (1 + 1e-6));
+    } else {
+      const auto kept = of_block(b);
+      list.insert(list.end(), kept.begin(), kept.end());
+    }
+    offsets_[b] = before;
+    counts_[b] = static_cast<std::uint32_t>(list.size()) - before;
+    const Vec3 reach = double(reach_[b]) * Vec3{1, 1, 1};
+    region.add(center(b) - reach), region.add(center(b) + reach);
+  }
+  chunks_[c] = {std::move(list), region};
 }
 
 }  // namespace evenmesh

@@ -13,7 +13,7 @@ namespace evenmesh {
 
 /// Lowers the largest distances between samples and mesh. A cell's sample that lies far from the triangles around its
 /// vertex is a tip or ridge between vertices; the vertices nearby are moved towards it, along the surface, as long as
-/// their triangles stay good (Q ≥ 0.648, angles ≥ 34.2°). On domes so small that no triangle of this size can follow
+/// their triangles stay good (Q ≥ 0.657, angles ≥ 34.2°). On domes so small that no triangle of this size can follow
 /// them, the triangle is lifted half way off the surface, by at most a fifth of an edge: that halves the largest
 /// deviation.
 ///

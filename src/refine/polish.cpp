@@ -19,7 +19,8 @@ std::vector<std::uint32_t> vertices_of_bad_triangles(const Mesh& mesh, const Ver
 
 bool improve(Mesh& mesh, const VertexRings& rings, const Projector* projector, std::uint32_t v) {
   Vec3& position = mesh.vertices[v];
-  const std::vector<Vec3> normals = rings.normals(v);
+  std::vector<Vec3> normals;
+  rings.normals(v, normals);
   const TangentPlane plane(rings.normal(v));
   const double edge = rings.edge_length(v), before = rings.worst_score(v, normals);
   Vec3 best_position = position;
@@ -30,7 +31,7 @@ bool improve(Mesh& mesh, const VertexRings& rings, const Projector* projector, s
     for (int eighth = 0; eighth < 8; ++eighth) {
       const Vec3 trial = from + plane.step(eighth, step * edge);
       position = projector ? projector->project(trial, 0.3 * edge) : trial;
-      const double worst = rings.worst_score(v, normals);
+      const double worst = rings.worst_score(v, normals, best);
       if (worst > best + 1e-6) best = worst, best_position = position;
     }
   }

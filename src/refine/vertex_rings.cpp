@@ -1,5 +1,7 @@
 #include "refine/vertex_rings.h"
 
+#include <algorithm>
+
 namespace evenmesh {
 
 VertexRings::VertexRings(const Mesh& mesh)
@@ -10,6 +12,15 @@ VertexRings::VertexRings(const Mesh& mesh)
   std::vector<std::uint32_t> fill(start_.begin(), start_.end() - 1);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t]) around_[fill[v]++] = static_cast<std::uint32_t>(t);
+  beside_start_.push_back(0);
+  beside_.reserve(around_.size());
+  for (std::uint32_t v = 0; v + 1 < start_.size(); ++v) {
+    const auto first = static_cast<std::ptrdiff_t>(beside_.size());
+    for (const std::uint32_t t : triangles(v))
+      for (const std::uint32_t w : mesh.triangles[t])
+        if (w != v && std::find(beside_.begin() + first, beside_.end(), w) == beside_.end()) beside_.push_back(w);
+    beside_start_.push_back(static_cast<std::uint32_t>(beside_.size()));
+  }
 }
 
 Vec3 VertexRings::normal(std::uint32_t v) const {
@@ -29,31 +40,40 @@ double VertexRings::edge_length(std::uint32_t v) const {
   return sum / (3.0 * static_cast<double>(triangles(v).size()));
 }
 
-std::vector<Vec3> VertexRings::normals(std::uint32_t v) const {
-  std::vector<Vec3> list;
+void VertexRings::normals(std::uint32_t v, std::vector<Vec3>& list) const {
+  list.clear();
   for (const std::uint32_t t : triangles(v)) list.push_back(normal_of(mesh_.triangles[t]));
-  return list;
 }
 
-double VertexRings::worst_score(std::uint32_t v, std::span<const Vec3> normals_before) const {
+namespace {
+
+double score_of(double x, double y, double z, double twice_area) {
+  const double longest = std::max({x, y, z}), shortest = std::min({x, y, z}), middle = x + y + z - longest - shortest;
+  if (!(shortest > 0)) return 0;
+  constexpr double good_quality = 0.72, sine_of_good_angle = 0.6156614753256583;  // 38°
+  const double quality = 6 * twice_area / (std::numbers::sqrt3 * (x + y + z) * longest);
+  const double sine = twice_area / (middle * longest);
+  return std::min(quality / good_quality, sine / sine_of_good_angle);
+}
+
+}  // namespace
+
+double VertexRings::worst_score(std::uint32_t v, std::span<const Vec3> normals_before, double least) const {
   double worst = 2;
   const auto around = triangles(v);
-  for (std::size_t i = 0; i < around.size(); ++i) {
+  for (std::size_t i = 0; i < around.size() && worst > least; ++i) {
     const Triangle& t = mesh_.triangles[around[i]];
-    worst = std::min(worst, score(t));
-    if (dot(normal_of(t), normals_before[i]) < 0.34) return -1;
+    const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
+    const Vec3 normal = cross(b - a, c - a);
+    const double twice_area = norm(normal);
+    if (dot(normal, normals_before[i]) < 0.34 * twice_area) return -1;
+    worst = std::min(worst, score_of(norm(b - a), norm(c - b), norm(a - c), twice_area));
   }
   return worst;
 }
 
 double VertexRings::score(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double x = norm(b - a), y = norm(c - b), z = norm(a - c);
-  const double longest = std::max({x, y, z}), shortest = std::min({x, y, z}), middle = x + y + z - longest - shortest;
-  const double twice_area = norm(cross(b - a, c - a));
-  if (!(shortest > 0)) return 0;
-  const double quality = 6 * twice_area / (std::numbers::sqrt3 * (x + y + z) * longest);
-  const double angle = std::asin(std::min(1.0, twice_area / (middle * longest))) * 180 / std::numbers::pi;
-  return std::min(quality / 0.72, angle / 38);
+  return score_of(norm(b - a), norm(c - b), norm(a - c), norm(cross(b - a, c - a)));
 }
 
 }  // namespace evenmesh

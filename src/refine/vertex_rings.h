@@ -19,16 +19,22 @@ class VertexRings {
   std::span<const std::uint32_t> triangles(std::uint32_t v) const {
     return {around_.data() + start_[v], start_[v + 1] - start_[v]};
   }
+  /// The vertices that share an edge with v.
+  std::span<const std::uint32_t> neighbours(std::uint32_t v) const {
+    return {beside_.data() + beside_start_[v], beside_start_[v + 1] - beside_start_[v]};
+  }
   /// Area-weighted mean of the triangles' normals, unit length.
   Vec3 normal(std::uint32_t v) const;
   /// Mean edge length of the triangles around v.
   double edge_length(std::uint32_t v) const;
   /// Unit normals of the triangles around v.
-  std::vector<Vec3> normals(std::uint32_t v) const;
+  void normals(std::uint32_t v, std::vector<Vec3>& list) const;
   /// Smallest score() of the triangles around v; below zero when one has turned by more than 70° from `normals_before`.
-  double worst_score(std::uint32_t v, std::span<const Vec3> normals_before) const;
+  /// Once it is known to be at most `least`, some number that is.
+  double worst_score(std::uint32_t v, std::span<const Vec3> normals_before, double least = -1) const;
 
-  /// How good a triangle is, from 0 to above 1: the smaller of Q / 0.72 and (smallest angle) / 38°. 1 is good enough.
+  /// How good a triangle is, from 0 to above 1: the smaller of Q / 0.72 and sin(smallest angle) / sin(38°). 1 is good
+  /// enough.
   static double score(const Vec3& a, const Vec3& b, const Vec3& c);
   Vec3 normal_of(const Triangle& t) const {
     return normalized(cross(mesh_.vertices[t[1]] - mesh_.vertices[t[0]], mesh_.vertices[t[2]] - mesh_.vertices[t[0]]));
@@ -39,7 +45,7 @@ class VertexRings {
 
  private:
   const Mesh& mesh_;
-  std::vector<std::uint32_t> start_, around_;
+  std::vector<std::uint32_t> start_, around_, beside_start_, beside_;
 };
 
 /// Two directions that span the plane across `normal`.
