@@ -325,8 +325,7 @@ LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>
   result.surface_euler = complex.surface_euler();
   std::vector<Index> piece_count(seeds.size(), 0);
   for (const Index root : complex.roots()) ++piece_count[labels[root]];
-  Splitter(samples, labels, complex, result)
-      .split(piece_count, samples.total_area / static_cast<double>(seeds.size()));
+  Splitter(samples, labels, complex, result).split(piece_count, samples.total_area / static_cast<double>(seeds.size()));
 
   std::vector<Vec3> positions(seeds.begin(), seeds.end());
   for (const CellPiece& piece : result.pieces) positions.push_back(piece.centroid);

@@ -84,7 +84,7 @@ class Balance {
   /// among them; those that start anywhere need many.
   std::size_t evaluations(bool coarsest) const {
     if (options_.evaluations) return *options_.evaluations;
-    const double few = std::clamp(30 * std::pow(4000.0 / static_cast<double>(seeds_.size()), 0.38), 8.0, 40.0);
+    const double few = std::clamp(30 * std::pow(4000.0 / static_cast<double>(seeds_.size()), 0.6), 6.0, 40.0);
     return static_cast<std::size_t>(std::lround(options_.effort * (!coarsest ? few : levels_ == 0 ? 100 : 40)));
   }
 

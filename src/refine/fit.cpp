@@ -1,7 +1,6 @@
 #include "refine/fit.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/parallel.h"
 #include "geometry/triangle.h"
@@ -10,17 +9,19 @@
 namespace evenmesh {
 namespace {
 
-constexpr double worth_fitting = 0.17;  ///< of the edge length
-constexpr double least_score = 0.913;   ///< Q ≥ 0.657, angles ≥ 34.2°
-constexpr double most_lift = 0.2;       ///< of the edge length
-constexpr int reaching_rounds = 5, lifting_rounds = 4;
+constexpr double worth_fitting = 0.15;   ///< of the edge length
+constexpr double least_score = 0.913;    ///< Q ≥ 0.639, angles ≥ 34.2°
+constexpr double most_lift = 0.2;        ///< of the edge length
+constexpr double among_the_worst = 0.8;  ///< of the largest deviation: what a round looks at
+constexpr int most_rounds = 16;
+constexpr int most_shakes = 2;  ///< rounds around the worst where nothing helps there
 constexpr std::size_t samples_per_cell = 20;
 
-/// Some samples of every vertex' cell.
+/// Samples of every vertex' cell: some, or all where it matters.
 class CellSamples {
  public:
-  CellSamples(const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, std::size_t vertices)
-      : start_(vertices + 1, 0) {
+  CellSamples(const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, std::size_t vertices, Run& run)
+      : samples_(samples), vertex_of_sample_(vertex_of_sample), run_(run), start_(vertices + 1, 0), list_(vertices, 0) {
     const std::size_t stride =
         std::max<std::size_t>(1, samples.size() / (samples_per_cell * std::max<std::size_t>(1, vertices)));
     const auto each = [&](const auto& visit) {
@@ -33,22 +34,48 @@ class CellSamples {
     for (std::size_t v = 0; v < vertices; ++v) start_[v + 1] += start_[v];
     points_.resize(start_.back());
     std::vector<std::size_t> fill(start_.begin(), start_.end() - 1);
-    each([&](std::size_t b, std::size_t i) {
-      points_[fill[vertex_of_sample[i]]++] =
-          samples.block_center(samples.blocks[b]) + Vec3{samples.x[i], samples.y[i], samples.z[i]};
-    });
+    each([&](std::size_t b, std::size_t i) { points_[fill[vertex_of_sample[i]]++] = position(b, i); });
   }
-  std::span<const Vec3> of(std::uint32_t v) const { return {points_.data() + start_[v], start_[v + 1] - start_[v]}; }
+  std::span<const Vec3> of(std::uint32_t v) const {
+    if (list_[v] > 0) return lists_[list_[v] - 1];
+    return {points_.data() + start_[v], start_[v + 1] - start_[v]};
+  }
+  /// From now on all samples of those vertices' cells. Cost: one pass over the labels.
+  void take_all_of(std::span<const std::uint32_t> vertices) {
+    for (const std::uint32_t v : vertices)
+      list_[v] = static_cast<std::uint32_t>(lists_.size() + 1), lists_.emplace_back();
+    constexpr std::size_t piece = 1024;
+    std::vector<std::vector<std::pair<std::uint32_t, Vec3>>> found((samples_.blocks.size() + piece - 1) / piece);
+    parallel_tasks(run_, found.size(), [&](std::size_t p) {
+      for (std::size_t b = p * piece; b < std::min(samples_.blocks.size(), (p + 1) * piece); ++b)
+        for (std::size_t i = samples_.blocks[b].begin; i < samples_.blocks[b].end; ++i)
+          if (const std::uint32_t v = vertex_of_sample_[i]; v < list_.size() && list_[v] > 0)
+            found[p].push_back({list_[v] - 1, position(b, i)});
+    });
+    for (const auto& of_piece : found)
+      for (const auto& [list, point] : of_piece) lists_[list].push_back(point);
+  }
 
  private:
+  Vec3 position(std::size_t block, std::size_t i) const {
+    return samples_.block_center(samples_.blocks[block]) + Vec3{samples_.x[i], samples_.y[i], samples_.z[i]};
+  }
+
+  const SampleSet& samples_;
+  std::span<const std::uint32_t> vertex_of_sample_;
+  Run& run_;
   std::vector<std::size_t> start_;
   std::vector<Vec3> points_;
+  std::vector<std::uint32_t> list_;  ///< by vertex: 1 + index into lists_, 0 = some samples have to do
+  std::vector<std::vector<Vec3>> lists_;
 };
 
 /// The mesh, and how far each cell's samples lie from it.
 class Fit {
  public:
-  Fit(Mesh& m, const CellSamples& c, const Projector* p) : mesh(m), cells(c), projector(p), rings(m) {}
+  Fit(Mesh& m, const CellSamples& c, const Projector* p) : mesh(m), cells(c), projector(p), rings(m) {
+    deviation.assign(m.vertices.size(), 0), stale.assign(m.vertices.size(), 1), hopeless.assign(m.vertices.size(), 0);
+  }
 
   /// Largest squared distance of a cell's samples from the triangles around its vertex; zero when all are so near that
   /// nobody asks how near.
@@ -61,11 +88,38 @@ class Fit {
   }
   /// Of the vertices whose surroundings changed since the last call; all of them at first.
   void measure_deviations(const Run& run) {
-    if (deviation.empty()) deviation.assign(mesh.vertices.size(), 0), stale.assign(mesh.vertices.size(), 1);
     parallel_for(run, deviation.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
-        if (stale[v]) deviation[v] = measured_deviation(static_cast<std::uint32_t>(v)), stale[v] = 0;
+        if (stale[v]) deviation[v] = measured_deviation(static_cast<std::uint32_t>(v)), stale[v] = hopeless[v] = 0;
     });
+  }
+  /// Vertices whose deviation is above `share` of the largest, for which there is hope, the worst first.
+  std::vector<std::uint32_t> far_vertices(double share) const {
+    const double limit = share * share * *std::max_element(deviation.begin(), deviation.end());
+    std::vector<std::uint32_t> list;
+    for (std::uint32_t v = 0; v < deviation.size(); ++v)
+      if (deviation[v] > limit && !hopeless[v]) list.push_back(v);
+    std::sort(list.begin(), list.end(),
+              [&](auto a, auto b) { return deviation[a] != deviation[b] ? deviation[a] > deviation[b] : a < b; });
+    return list;
+  }
+  /// Vertices around the worst, which are stuck: when something gives way there, there is hope again for those.
+  std::vector<std::uint32_t> around_the_stuck() {
+    constexpr std::size_t most_stuck = 6;
+    std::vector<std::uint32_t> stuck(deviation.size());
+    for (std::uint32_t v = 0; v < stuck.size(); ++v) stuck[v] = v;
+    const auto end = stuck.begin() + static_cast<std::ptrdiff_t>(std::min(most_stuck, stuck.size()));
+    std::partial_sort(stuck.begin(), end, stuck.end(), [&](auto a, auto b) {
+      return deviation[a] != deviation[b] ? deviation[a] > deviation[b] : a < b;
+    });
+    stuck.erase(end, stuck.end());
+    std::vector<char> near(deviation.size(), 0);
+    for (const std::uint32_t v : stuck)
+      for (const std::uint32_t w : vertices_around(v, 6)) near[w] = 1;
+    std::vector<std::uint32_t> list = far_vertices(0);
+    std::erase_if(list, [&](std::uint32_t v) { return !near[v]; });
+    for (const std::uint32_t v : stuck) hopeless[v] = 0;
+    return list;
   }
   /// Whether p is nearer than √limit to the triangles around v.
   bool is_within(const Vec3& p, std::uint32_t v, double limit) const {
@@ -101,10 +155,11 @@ class Fit {
   const VertexRings rings;
   std::vector<double> deviation;  ///< squared, by vertex
   std::vector<char> stale;        ///< deviation may be wrong
+  std::vector<char> hopeless;     ///< an attempt was in vain, and nothing has changed since
 };
 
-/// Tries to bring the mesh nearer to the samples of one vertex' cell. Touches what lies up to `touched_rings` edges away
-/// and nothing else.
+/// Tries to bring the mesh nearer to the samples of one vertex' cell. Touches what lies up to `touched_rings` edges
+/// away and nothing else.
 class Attempt {
  public:
   static constexpr int touched_rings = 4;
@@ -124,7 +179,7 @@ class Attempt {
       const double dp = squared_norm(mesh_.vertices[p] - tip_), dq = squared_norm(mesh_.vertices[q] - tip_);
       return dp != dq ? dp < dq : p < q;
     });
-    movers.resize(std::min<std::size_t>(movers.size(), 5));
+    movers.resize(std::min<std::size_t>(movers.size(), 3));
     for (const double share : {1.0, 0.75, 0.5, 0.25})
       for (const std::uint32_t mover : movers)
         if (pull(mover, mesh_.vertices[mover] + share * (tip_ - mesh_.vertices[mover]))) return true;
@@ -143,16 +198,19 @@ class Attempt {
     }
     const Triangle corners = mesh_.triangles[nearest];
     const double edge = rings_.edge_length(v_);
-    Vec3 step = 0.5 * (tip_ - foot);
-    if (norm(step) > most_lift * edge) step *= most_lift * edge / norm(step);
     region_.clear();
     for (const std::uint32_t c : corners)
       for (const std::uint32_t w : fit_.vertices_around(c, 2)) region_.push_back(w);
     std::sort(region_.begin(), region_.end());
     region_.erase(std::unique(region_.begin(), region_.end()), region_.end());
     remember(region_);
-    for (const std::uint32_t c : corners) mesh_.vertices[c] += step;
-    return keep_or_undo();
+    for (const double share : {0.5, 0.35, 0.2}) {
+      Vec3 step = share * (tip_ - foot);
+      if (norm(step) > most_lift * edge) step *= most_lift * edge / norm(step);
+      for (const std::uint32_t c : corners) mesh_.vertices[c] += step;
+      if (keep_or_undo()) return true;
+    }
+    return false;
   }
 
  private:
@@ -248,7 +306,8 @@ class Attempt {
 };
 
 /// Takes those vertices off the list, from the front, that are so far apart that attempts do not meet.
-std::vector<std::uint32_t> take_independent(const Fit& fit, std::vector<std::uint32_t>& list, std::vector<char>& taken) {
+std::vector<std::uint32_t> take_independent(const Fit& fit, std::vector<std::uint32_t>& list,
+                                            std::vector<char>& taken) {
   std::fill(taken.begin(), taken.end(), 0);
   std::vector<std::uint32_t> group, rest;
   for (const std::uint32_t v : list) {
@@ -266,31 +325,36 @@ std::vector<std::uint32_t> take_independent(const Fit& fit, std::vector<std::uin
 
 std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
                          const Projector* projector, Run& run) {
-  const std::size_t count = mesh.vertices.size();
-  const CellSamples cells(samples, vertex_of_sample, count);
+  CellSamples cells(samples, vertex_of_sample, mesh.vertices.size(), run);
   Fit fit(mesh, cells, projector);
-  std::vector<char> taken(count);
+  fit.measure_deviations(run);
+  const auto far = fit.far_vertices(0);
+  cells.take_all_of(far);
+  for (const std::uint32_t v : far) fit.stale[v] = 1;
+  std::vector<char> taken(mesh.vertices.size());
   std::size_t moves = 0;
-  for (int round = 0; round < reaching_rounds + lifting_rounds; ++round) {
+  int shakes = 0;
+  bool shake = false;
+  for (int round = 0; round < most_rounds; ++round) {
     fit.measure_deviations(run);
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t v = 0; v < count; ++v)
-      if (fit.deviation[v] > 0) order.push_back(v);
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) {
-      return fit.deviation[a] != fit.deviation[b] ? fit.deviation[a] > fit.deviation[b] : a < b;
-    });
-    order.resize(std::min(order.size(), std::max<std::size_t>(50, count / 100)));
+    std::vector<std::uint32_t> worst = shake ? fit.around_the_stuck() : fit.far_vertices(among_the_worst);
     const std::size_t before = moves;
-    while (!order.empty()) {
-      const auto group = take_independent(fit, order, taken);
+    while (!worst.empty()) {
+      const auto group = take_independent(fit, worst, taken);
       std::vector<char> moved(group.size(), 0);
       parallel_tasks(run, group.size(), [&](std::size_t i) {
         Attempt attempt(fit, group[i]);
-        moved[i] = round < reaching_rounds ? attempt.reach() : attempt.lift();
+        moved[i] = attempt.reach() || attempt.lift();
+        fit.hopeless[group[i]] = !moved[i];
       });
       moves += static_cast<std::size_t>(std::count(moved.begin(), moved.end(), 1));
     }
-    if (moves == before && round >= reaching_rounds) break;
+    if (moves > before)
+      shake = false;
+    else if (shake || shakes == most_shakes)
+      break;
+    else
+      shake = true, ++shakes;
   }
   return moves;
 }

@@ -50,7 +50,7 @@ namespace {
 double score_of(double x, double y, double z, double twice_area) {
   const double longest = std::max({x, y, z}), shortest = std::min({x, y, z}), middle = x + y + z - longest - shortest;
   if (!(shortest > 0)) return 0;
-  constexpr double good_quality = 0.72, sine_of_good_angle = 0.6156614753256583;  // 38°
+  constexpr double good_quality = 0.7, sine_of_good_angle = 0.6156614753256583;  // 38°
   const double quality = 6 * twice_area / (std::numbers::sqrt3 * (x + y + z) * longest);
   const double sine = twice_area / (middle * longest);
   return std::min(quality / good_quality, sine / sine_of_good_angle);

@@ -33,7 +33,7 @@ class VertexRings {
   /// Once it is known to be at most `least`, some number that is.
   double worst_score(std::uint32_t v, std::span<const Vec3> normals_before, double least = -1) const;
 
-  /// How good a triangle is, from 0 to above 1: the smaller of Q / 0.72 and sin(smallest angle) / sin(38°). 1 is good
+  /// How good a triangle is, from 0 to above 1: the smaller of Q / 0.7 and sin(smallest angle) / sin(38°). 1 is good
   /// enough.
   static double score(const Vec3& a, const Vec3& b, const Vec3& c);
   Vec3 normal_of(const Triangle& t) const {

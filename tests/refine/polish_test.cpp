@@ -40,7 +40,7 @@ TEST(Polish, ScoreIsOneForGoodTrianglesAndZeroForNone) {
   EXPECT_NEAR(VertexRings::score({0, 0, 0}, {1, 0, 0}, {2, 0, 0}), 0, 1e-12);
   // Half a square: smallest angle 45°, Q = 3 / (√3 · (1 + 1/√2) · √2).
   EXPECT_NEAR(VertexRings::score({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
-              3 / (std::sqrt(3.0) * (1 + std::sqrt(0.5)) * std::sqrt(2.0)) / 0.72, 1e-9);
+              3 / (std::sqrt(3.0) * (1 + std::sqrt(0.5)) * std::sqrt(2.0)) / 0.7, 1e-9);
 }
 
 }  // namespace
