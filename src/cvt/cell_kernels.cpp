@@ -13,6 +13,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t max_candidates = 256;
 constexpr float far_away = 1e30f;
+constexpr std::size_t max_lanes = 8;
 
 using D = hn::CappedTag<float, 8>;
 using V = hn::Vec<D>;
@@ -70,16 +71,45 @@ class Table {
   V lanes_;
 };
 
-double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const BlockSums& sums) {
+/// Bit c set for every candidate that is the first or second of a lane; all candidates when there are many.
+template <typename Index>
+HWY_INLINE std::uint32_t present(Index first, Index second) {
+  const hn::RebindToUnsigned<D> du;
+  const auto one = hn::Set(du, 1u);
+  auto bits = hn::Or(hn::Shl(one, hn::BitCast(du, first)), hn::Shl(one, hn::BitCast(du, second)));
+  HWY_ALIGN std::uint32_t lane[8] = {};
+  hn::Store(bits, du, lane);
+  return (lane[0] | lane[1]) | (lane[2] | lane[3]) | ((lane[4] | lane[5]) | (lane[6] | lane[7]));
+}
+
+/// What the samples of one vector give to their first and second seed.
+struct Parts {
+  V first, second;  // positions in the candidate list
+  V mass1, mass2, moment1[3], moment2[3];
+};
+
+/// Adds to the sums of candidate c, lane by lane.
+HWY_INLINE void add_parts(D d, const Parts& parts, std::size_t c, float* lanes) {
+  const V index = hn::Set(d, static_cast<float>(c));
+  const auto is1 = hn::Eq(parts.first, index), is2 = hn::Eq(parts.second, index);
+  float* at = lanes + lane_sums_per_seed * c;
+  const auto add = [&](V one, V two, float* sum) {
+    hn::StoreU(hn::Add(hn::LoadU(d, sum), hn::Add(hn::IfThenElseZero(is1, one), hn::IfThenElseZero(is2, two))), d, sum);
+  };
+  add(parts.mass1, parts.mass2, at);
+  for (int a = 0; a < 3; ++a) add(parts.moment1[a], parts.moment2[a], at + (a + 1) * max_lanes);
+}
+
+double EvaluateBlock(const BlockView& b, float* lane_sums, const BlockSums& sums) {
   const D d;
   const hn::RebindToSigned<D> di;
   const std::size_t lanes = hn::Lanes(d);
-  float* const* t = scratch.array;
+  const bool few = b.seeds <= 32;
   const Table seed[3] = {{d, b.seed_x, b.seeds}, {d, b.seed_y, b.seeds}, {d, b.seed_z, b.seeds}};
   V energy = hn::Zero(d);
-  // First pass: the two nearest seeds of each sample, and what each of them gets of its footprint. The profile of a
-  // footprint across the bisector is 3/(4R)·(1 − t²/R²), the projection of an isotropic density: F and its gradient
-  // agree.
+  for (std::size_t i = 0; i < lane_sums_per_seed * b.seeds; i += lanes) hn::StoreU(hn::Zero(d), d, lane_sums + i);
+  // The two nearest seeds of each sample, and what each of them gets of its footprint. The profile of a footprint
+  // across the bisector is 3/(4R)·(1 − t²/R²), the projection of an isotropic density: F and its gradient agree.
   for (std::size_t i = 0; i < b.samples; i += lanes) {
     const V p[3] = {load(d, b.x, i, b.samples), load(d, b.y, i, b.samples), load(d, b.z, i, b.samples)};
     const V w = load(d, b.area, i, b.samples);
@@ -105,37 +135,27 @@ double EvaluateBlock(const BlockView& b, const BlockScratch& scratch, const Bloc
     const V p2 = hn::Add(hn::Mul(p[0], p[0]), hn::Add(hn::Mul(p[1], p[1]), hn::Mul(p[2], p[2])));
     const V gain = hn::Mul(hn::Add(reach, reach), hn::Sub(moment, hn::Mul(u, share)));
     energy = hn::Add(energy, hn::Mul(w, hn::Sub(hn::Add(n.distance_first, p2), gain)));
-    hn::Store(n.first, d, t[0] + i);
-    hn::Store(n.second, d, t[1] + i);
-    hn::Store(w1, d, t[2] + i);
-    hn::Store(w2, d, t[3] + i);
+    Parts parts{n.first, n.second, w1, w2, {}, {}};
     for (int a = 0; a < 3; ++a) {
       const V move = hn::Mul(shift, apart[a]);
-      hn::Store(hn::Sub(hn::Mul(w1, p[a]), move), d, t[4 + a] + i);
-      hn::Store(hn::Add(hn::Mul(w2, p[a]), move), d, t[7 + a] + i);
+      parts.moment1[a] = hn::Sub(hn::Mul(w1, p[a]), move);
+      parts.moment2[a] = hn::Add(hn::Mul(w2, p[a]), move);
+    }
+    // The few candidates that occur in these lanes; no scattering.
+    if (few) {
+      for (std::uint32_t bits = present(first, second); bits != 0; bits &= bits - 1)
+        add_parts(d, parts, static_cast<std::size_t>(__builtin_ctz(bits)), lane_sums);
+    } else {
+      for (std::size_t c = 0; c < b.seeds; ++c) add_parts(d, parts, c, lane_sums);
     }
   }
-  // Second pass: sums per candidate, without scattering.
   for (std::size_t c = 0; c < b.seeds; ++c) {
-    const V index = hn::Set(d, static_cast<float>(c));
-    V mass = hn::Zero(d), mx = hn::Zero(d), my = hn::Zero(d), mz = hn::Zero(d);
-    for (std::size_t i = 0; i < b.samples; i += lanes) {
-      const auto is1 = hn::Eq(hn::Load(d, t[0] + i), index);
-      const auto is2 = hn::Eq(hn::Load(d, t[1] + i), index);
-      mass = hn::Add(mass, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[2] + i)),
-                                   hn::IfThenElseZero(is2, hn::Load(d, t[3] + i))));
-      mx = hn::Add(
-          mx, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[4] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[7] + i))));
-      my = hn::Add(
-          my, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[5] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[8] + i))));
-      mz = hn::Add(
-          mz, hn::Add(hn::IfThenElseZero(is1, hn::Load(d, t[6] + i)), hn::IfThenElseZero(is2, hn::Load(d, t[9] + i))));
-    }
-    const float m = sum_lanes(d, mass);
+    const float* at = lane_sums + lane_sums_per_seed * c;
+    const float m = sum_lanes(d, hn::LoadU(d, at));
     sums.mass[c] = m;
-    sums.mx[c] = sum_lanes(d, mx) - m * b.seed_x[c];
-    sums.my[c] = sum_lanes(d, my) - m * b.seed_y[c];
-    sums.mz[c] = sum_lanes(d, mz) - m * b.seed_z[c];
+    sums.mx[c] = sum_lanes(d, hn::LoadU(d, at + max_lanes)) - m * b.seed_x[c];
+    sums.my[c] = sum_lanes(d, hn::LoadU(d, at + 2 * max_lanes)) - m * b.seed_y[c];
+    sums.mz[c] = sum_lanes(d, hn::LoadU(d, at + 3 * max_lanes)) - m * b.seed_z[c];
   }
   return sum_lanes(d, energy);
 }
@@ -286,8 +306,8 @@ HWY_EXPORT(KeepNearSeeds);
 HWY_EXPORT(NearestInBlock);
 HWY_EXPORT(NearestPairInBlock);
 
-double evaluate_block(const BlockView& block, const BlockScratch& scratch, const BlockSums& sums) {
-  return HWY_DYNAMIC_DISPATCH(EvaluateBlock)(block, scratch, sums);
+double evaluate_block(const BlockView& block, float* lane_sums, const BlockSums& sums) {
+  return HWY_DYNAMIC_DISPATCH(EvaluateBlock)(block, lane_sums, sums);
 }
 std::size_t keep_near_seeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed,
                             std::size_t count) {

@@ -16,12 +16,6 @@ struct BlockView {
   std::size_t seeds;
 };
 
-/// Scratch for the largest block: arrays of `capacity` floats, 64-byte aligned, in one allocation.
-struct BlockScratch {
-  static constexpr int arrays = 10;
-  float* array[arrays];
-};
-
 /// Box of a block's samples relative to its centre.
 struct BlockBox {
   float center[3], half[3];
@@ -47,8 +41,11 @@ struct BlockSums {
   float *mass, *mx, *my, *mz;
 };
 
+/// Floats of scratch that evaluate_block needs per candidate seed.
+inline constexpr std::size_t lane_sums_per_seed = 32;
+
 /// Mass and first moments about each seed, footprints cut by bisectors; returns the block's energy.
-double evaluate_block(const BlockView& block, const BlockScratch& scratch, const BlockSums& sums);
+double evaluate_block(const BlockView& block, float* lane_sums, const BlockSums& sums);
 
 /// Position in the candidate list of the nearest seed of every sample, first one on ties.
 void nearest_in_block(const BlockView& block, std::uint32_t* nearest);

@@ -1,6 +1,5 @@
 #include "cvt/cells.h"
 
-#include <hwy/aligned_allocator.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <cmath>
@@ -25,15 +24,11 @@ constexpr std::size_t few_candidates = 8;
 /// Seeds of one block in single precision, and its sums.
 struct Workspace {
   std::vector<float> seeds, sums;
-  hwy::AlignedFreeUniquePtr<float[]> scratch_memory;
-  BlockScratch scratch{};
+  std::vector<float> lane_sums;
   std::vector<std::uint32_t> candidates, first, second;
   std::vector<float> distance;
 
   Workspace(std::size_t largest_block) {
-    const std::size_t capacity = (largest_block + 15) / 16 * 16;
-    scratch_memory = hwy::AllocateAligned<float>(capacity * BlockScratch::arrays);
-    for (int a = 0; a < BlockScratch::arrays; ++a) scratch.array[a] = scratch_memory.get() + capacity * a;
     first.resize(largest_block), second.resize(largest_block), distance.resize(largest_block);
   }
 };
@@ -131,8 +126,9 @@ void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
         if (fixed.cell.size() != seeds.size()) fixed.cell.assign(seeds.size(), {});
         const std::size_t n = candidates.size();
         work.sums.resize(4 * n);
+        work.lane_sums.resize(lane_sums_per_seed * n);
         const BlockSums out{work.sums.data(), work.sums.data() + n, work.sums.data() + 2 * n, work.sums.data() + 3 * n};
-        state.block_energy[b] = evaluate_block(view, work.scratch, out);
+        state.block_energy[b] = evaluate_block(view, work.lane_sums.data(), out);
         const double to_mass = 1 / mass_unit, to_moment = 1 / moment_unit;
         for (std::size_t c = 0; c < n; ++c) {
           auto& cell = fixed.cell[candidates[c]];
