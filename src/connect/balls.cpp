@@ -268,12 +268,15 @@ SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, Run
   return Union(samples, balls, run).result();
 }
 
-BallIndex::BallIndex(std::vector<Ball> balls) : balls_(std::move(balls)) {
-  for (const Ball& b : balls_) side_ = &b == balls_.data() ? b.radius : std::max(side_, b.radius);
-  for (std::size_t b = 0; b < balls_.size(); ++b) {
-    const auto c = cell_of(balls_[b].center);
-    cells_[key(c[0], c[1], c[2])].push_back(static_cast<std::uint32_t>(b));
-  }
+BallIndex::BallIndex(std::vector<Ball> balls, double largest_radius) : side_(largest_radius) {
+  for (const Ball& b : balls) side_ = std::max(side_, b.radius);
+  for (const Ball& b : balls) add(b);
+}
+
+void BallIndex::add(const Ball& ball) {
+  const auto c = cell_of(ball.center);
+  cells_[key(c[0], c[1], c[2])].push_back(static_cast<std::uint32_t>(balls_.size()));
+  balls_.push_back(ball);
 }
 
 std::array<std::int64_t, 3> BallIndex::cell_of(const Vec3& p) const {

@@ -24,10 +24,12 @@ struct Ball {
 /// Based on [Raster2Mesh §4.4].
 SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, Run& run);
 
-/// Finds the balls around a point. Immutable; safe from several threads.
+/// Finds the balls around a point. Safe from several threads while none is added.
 class BallIndex {
  public:
-  explicit BallIndex(std::vector<Ball> balls);
+  /// @param largest_radius  of balls that will be added, model units
+  explicit BallIndex(std::vector<Ball> balls, double largest_radius = 0);
+  void add(const Ball& ball);
   const std::vector<Ball>& balls() const { return balls_; }
   /// Calls visit(ball index) for every ball within `reach` of p, and perhaps for some others, in a fixed order.
   template <typename Visit>
@@ -49,7 +51,7 @@ class BallIndex {
   static std::int64_t key(std::int64_t i, std::int64_t j, std::int64_t k);
 
   std::vector<Ball> balls_;
-  double side_ = 1;  ///< of a cell: the largest radius, so that balls reach one cell beyond their centre's
+  double side_ = 0;  ///< of a cell: the largest radius, so that balls reach one cell beyond their centre's
   std::unordered_map<std::int64_t, std::vector<std::uint32_t>> cells_;
 };
 

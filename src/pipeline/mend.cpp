@@ -49,6 +49,8 @@ class Planner {
         pinches_(pinches, options.edge),
         balls_(balls),
         options_(options),
+        new_balls_({}, 0.5 * options.edge),
+        planned_(pinches.size(), 0),
         cells_(seeds.size()),
         asked_(seeds.size(), 0) {
     mending_.balls = balls.balls();
@@ -102,7 +104,10 @@ class Planner {
       return;
     }
     bool pinched = false;
-    pinches_.near(middle, reach, [&](std::uint32_t i) { pinched = true, put_ball(pinch_points_[i]); });
+    pinches_.near(middle, reach, [&](std::uint32_t i) {
+      pinched = true;
+      if (!planned_[i]) planned_[i] = 1, put_ball(pinch_points_[i]);
+    });
     if (pinched) return;
     if (std::min(cells_[a].samples, cells_[b].samples) < fewest_samples) return put_ball(middle);
     if (options_.prefer_balls && unresolved_near(middle)) return put_ball(middle);
@@ -131,11 +136,13 @@ class Planner {
       grown_[b] = 1, ball.radius += step;
       mending_.changed.push_back(b);
     });
-    for (std::size_t b = balls_.balls().size(); b < mending_.balls.size() && !met; ++b)
-      met = squared_norm(p - mending_.balls[b].center) < start * start;
+    new_balls_.near(p, 0, [&](std::uint32_t b) {
+      met |= squared_norm(p - new_balls_.balls()[b].center) < start * start;
+    });
     if (met) return;
     mending_.changed.push_back(static_cast<std::uint32_t>(mending_.balls.size()));
     mending_.balls.push_back({p, start});
+    new_balls_.add({p, start});
   }
 
   const SampleSet& samples_;
@@ -145,6 +152,8 @@ class Planner {
   PointIndex pinches_;
   const BallIndex& balls_;
   const MendOptions& options_;
+  BallIndex new_balls_;
+  std::vector<char> planned_;  ///< pinches that have been seen to
   std::vector<Cell> cells_;
   std::vector<char> asked_, grown_;
   Mending mending_;
