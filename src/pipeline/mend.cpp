@@ -136,9 +136,8 @@ class Planner {
       grown_[b] = 1, ball.radius += step;
       mending_.changed.push_back(b);
     });
-    new_balls_.near(p, 0, [&](std::uint32_t b) {
-      met |= squared_norm(p - new_balls_.balls()[b].center) < start * start;
-    });
+    new_balls_.near(p, 0,
+                    [&](std::uint32_t b) { met |= squared_norm(p - new_balls_.balls()[b].center) < start * start; });
     if (met) return;
     mending_.changed.push_back(static_cast<std::uint32_t>(mending_.balls.size()));
     mending_.balls.push_back({p, start});
