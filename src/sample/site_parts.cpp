@@ -12,14 +12,15 @@ std::size_t SiteVoxels::bytes() const {
          normal.capacity() * sizeof(PackedNormal) + source.capacity() * sizeof(std::uint32_t);
 }
 
-std::vector<KeyRun> runs_of(const std::vector<std::uint64_t>& sorted_keys) {
-  std::vector<KeyRun> runs;
-  for (std::size_t i = 0; i < sorted_keys.size(); ++i) {
-    const auto code = static_cast<std::uint32_t>(sorted_keys[i] >> 32);
-    if (runs.empty() || runs.back().code != code) runs.push_back({code, i, i});
-    runs.back().end = i + 1;
+std::vector<BrickItems> bricks_of(const std::vector<std::uint64_t>& sorted_keys) {
+  std::vector<BrickItems> bricks;
+  for (std::size_t begin = 0, end = 0; begin < sorted_keys.size(); begin = end) {
+    while (end < sorted_keys.size() && sorted_keys[end] >> 32 == sorted_keys[begin] >> 32) ++end;
+    const auto at = morton_decode(sorted_keys[begin] >> 32);
+    bricks.push_back({{at[0] * brick_voxels, at[1] * brick_voxels, at[2] * brick_voxels},
+                      std::span(sorted_keys).subspan(begin, end - begin)});
   }
-  return runs;
+  return bricks;
 }
 
 namespace {

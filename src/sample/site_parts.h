@@ -1,10 +1,14 @@
 #pragma once
 /// Sites, piece by piece of the grid.
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/parallel.h"
+#include "sample/morton.h"
 #include "sample/voxelize.h"
 
 namespace evenmesh {
@@ -21,12 +25,87 @@ struct SitePart {
 /// @throws InvalidInput  more than 4 billion sites
 SiteVoxels join_parts(const VoxelGrid& grid, std::vector<SitePart>& parts, const Run& run);
 
-/// A run of the sorted keys that share their upper 32 bits: the Morton code of a piece of the grid. The lower 32 bits
-/// say what lies in it.
-struct KeyRun {
-  std::uint32_t code;
-  std::size_t begin, end;
+/// Bricks of 16³ voxels are the unit of work: so their Morton codes have 30 bits.
+inline constexpr int brick_bits = 4;
+inline constexpr std::int32_t brick_voxels = 1 << brick_bits;  ///< per side
+inline std::uint64_t brick_key(const Voxel& brick, std::size_t item) {
+  return morton_code(std::uint64_t(brick[0]), std::uint64_t(brick[1]), std::uint64_t(brick[2])) << 32 | item;
+}
+
+/// The keys that belong to one brick: what lies in it, in ascending order.
+struct BrickItems {
+  Voxel corner;  ///< the brick's first voxel
+  std::span<const std::uint64_t> keys;
 };
-std::vector<KeyRun> runs_of(const std::vector<std::uint64_t>& sorted_keys);
+std::vector<BrickItems> bricks_of(const std::vector<std::uint64_t>& sorted_keys);
+
+/// Collects what is known of the sites of one brick after the other.
+template <typename Site>
+class BrickSites {
+ public:
+  void start(const Voxel& corner) { corner_ = corner; }
+  /// Whether a voxel of the grid lies in the brick.
+  bool contains(const Voxel& v) const {
+    return ((v[0] - corner_[0]) | (v[1] - corner_[1]) | (v[2] - corner_[2])) >> brick_bits == 0;
+  }
+  /// The site of a voxel of the brick; a new one when there is none.
+  Site& at(const Voxel& v) {
+    const std::int32_t i = v[0] - corner_[0], j = v[1] - corner_[1], k = v[2] - corner_[2];
+    std::uint16_t& slot = slots_[static_cast<std::size_t>((k << brick_bits | j) << brick_bits | i)];
+    if (slot == 0) {
+      sites_.emplace_back();
+      slot = static_cast<std::uint16_t>(sites_.size());
+    }
+    return sites_[slot - 1u];
+  }
+  /// Calls append(site, voxel) for all sites in the order of their tiles, adds the tiles to the part, and forgets them.
+  template <typename Append>
+  void finish(SitePart& part, const Append& append) {
+    for (unsigned t = 0; t < 8 && !sites_.empty(); ++t) {
+      const std::array<unsigned, 3> half{t & 1, t >> 1 & 1, t >> 2};
+      VoxelTile tile;
+      for (std::size_t a = 0; a < 3; ++a)
+        tile.at[a] = static_cast<std::uint16_t>(static_cast<unsigned>(corner_[a]) / tile_size + half[a]);
+      std::uint64_t any = 0;
+      for (unsigned z = 0; z < tile_size; ++z) {
+        for (unsigned y = 0; y < tile_size; ++y) {
+          const unsigned row = ((tile_size * half[2] + z) << brick_bits) + tile_size * half[1] + y;
+          finish_row(&slots_[(std::size_t{row} << brick_bits) + tile_size * half[0]], y, z, tile, append);
+        }
+        any |= tile.layers[z];
+      }
+      if (any != 0) part.tiles.push_back(tile);
+    }
+    sites_.clear();
+  }
+
+ private:
+  template <typename Append>
+  void finish_row(std::uint16_t* row, unsigned y, unsigned z, VoxelTile& tile, const Append& append) {
+    const Voxel corner = tile.corner();
+    for (unsigned x = 0; x < tile_size; ++x) {
+      if (row[x] == 0) continue;
+      tile.layers[z] |= VoxelTile::bit(x, y);
+      append(sites_[row[x] - 1u],
+             Voxel{corner[0] + std::int32_t(x), corner[1] + std::int32_t(y), corner[2] + std::int32_t(z)});
+      row[x] = 0;
+    }
+  }
+
+  Voxel corner_{};
+  std::vector<std::uint16_t> slots_ = std::vector<std::uint16_t>(1 << (3 * brick_bits));  // site + 1; 0: none
+  std::vector<Site> sites_;
+};
+
+/// Calls work(bricks, part) for pieces of neighbouring bricks, in parallel, and joins the parts.
+template <typename Work>
+SiteVoxels collect_sites(const VoxelGrid& grid, std::span<const BrickItems> bricks, const Run& run, const Work& work) {
+  constexpr std::size_t per_part = 32;
+  std::vector<SitePart> parts((bricks.size() + per_part - 1) / per_part);
+  parallel_tasks(run, parts.size(), [&](std::size_t p) {
+    work(bricks.subspan(p * per_part, std::min(per_part, bricks.size() - p * per_part)), parts[p]);
+  });
+  return join_parts(grid, parts, run);
+}
 
 }  // namespace evenmesh

@@ -8,7 +8,6 @@
 
 #include "evenmesh/error.h"
 #include "geometry/triangle.h"
-#include "sample/morton.h"
 #include "sample/site_parts.h"
 #include "sample/triangle_cells.h"
 #include "sample/voxelize.h"
@@ -16,9 +15,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr int kBrickBits = 4;
-constexpr std::int32_t kBrick = 1 << kBrickBits;  // voxels per side
-constexpr std::size_t kBricksPerPart = 32, kTrianglesPerPiece = 4096;
+constexpr std::size_t kTrianglesPerPiece = 4096;
 
 /// A mesh in voxels, snapped to the lattice.
 struct SnappedMesh {
@@ -54,31 +51,28 @@ CellBox all_cells(const VoxelGrid& grid, int bits) {
   return box;
 }
 
-bool is_within(const CellBox& box, const CellBox& whole) {
-  for (std::size_t a = 0; a < 3; ++a)
-    if (box[a].first < whole[a].first || box[a].last > whole[a].last) return false;
+bool is_within(const LatticeTriangle& corners, const VoxelGrid& grid, int bits) {
+  for (const LatticePoint& p : corners)
+    for (std::size_t a = 0; a < 3; ++a)
+      if (p[a] < 0 || p[a] > std::int64_t{grid.size[a]} << bits) return false;
   return true;
 }
 
-/// Pairs of a brick and a triangle that touches it: Morton code << 32 | triangle, sorted.
+/// Pairs of a brick and a triangle that touches it: brick_key(), sorted.
 std::vector<std::uint64_t> bin_triangles(const SnappedMesh& snapped, std::size_t& outside, const Run& run) {
   const std::size_t count = snapped.mesh.triangles.size(),
                     pieces = (count + kTrianglesPerPiece - 1) / kTrianglesPerPiece;
   std::vector<std::vector<std::uint64_t>> found(pieces);
   std::atomic<std::size_t> cut{0};
-  const CellBox voxels = all_cells(snapped.grid, 0), bricks = all_cells(snapped.grid, kBrickBits);
+  const CellBox bricks = all_cells(snapped.grid, brick_bits);
   parallel_for(run, pieces, 1, [&](std::size_t begin, std::size_t end) {
     TriangleCells touched;
     for (std::size_t piece = begin; piece < end; ++piece)
       for (std::size_t t = piece * kTrianglesPerPiece; t < std::min(count, (piece + 1) * kTrianglesPerPiece); ++t) {
         const LatticeTriangle corners = snapped.corners(t);
-        const CellBox box = cells_of_box(corners, snapped.bits);
-        if (!is_within(box, voxels)) cut.fetch_add(1, std::memory_order_relaxed);
-        touched.set(corners, snapped.bits + kBrickBits, bricks);
-        touched.for_each([&](const std::array<std::int32_t, 3>& b) {
-          const std::uint64_t code = morton_code(std::uint64_t(b[0]), std::uint64_t(b[1]), std::uint64_t(b[2]));
-          found[piece].push_back(code << 32 | t);
-        });
+        if (!is_within(corners, snapped.grid, snapped.bits)) cut.fetch_add(1, std::memory_order_relaxed);
+        touched.set(corners, snapped.bits + brick_bits, bricks);
+        touched.for_each([&](const Voxel& brick) { found[piece].push_back(brick_key(brick, t)); });
       }
   });
   outside = cut.load();
@@ -121,83 +115,49 @@ class BrickVoxelizer {
  public:
   explicit BrickVoxelizer(const SnappedMesh& snapped) : snapped_(snapped), whole_(all_cells(snapped.grid, 0)) {}
 
-  void voxelize(const KeyRun& brick, const std::vector<std::uint64_t>& pairs, SitePart& part) {
-    const auto at = morton_decode(brick.code);
-    for (std::size_t a = 0; a < 3; ++a) {
-      corner_[a] = at[a] * kBrick;
-      box_[a] = CellRange{corner_[a], corner_[a] + kBrick - 1}.cut(whole_[a]);
-    }
-    for (std::size_t i = brick.begin; i < brick.end; ++i) add(static_cast<std::uint32_t>(pairs[i]));
-    finish(part);
+  void voxelize(const BrickItems& brick, SitePart& part) {
+    CellBox box;
+    for (std::size_t a = 0; a < 3; ++a)
+      box[a] = CellRange{brick.corner[a], brick.corner[a] + brick_voxels - 1}.cut(whole_[a]);
+    sites_.start(brick.corner);
+    for (const std::uint64_t key : brick.keys) add(static_cast<std::uint32_t>(key), brick.corner, box);
+    const auto h = static_cast<float>(snapped_.grid.side);
+    sites_.finish(part, [&](const Site& site, const Voxel&) {
+      part.x.push_back(h * site.x), part.y.push_back(h * site.y), part.z.push_back(h * site.z);
+      part.source.push_back(site.source);
+    });
   }
 
  private:
   struct Site {
-    double squared_distance;
-    float x, y, z;  // in voxels
-    std::uint32_t source;
+    double squared_distance = std::numeric_limits<double>::infinity();
+    float x = 0, y = 0, z = 0;  // in voxels
+    std::uint32_t source = 0;
   };
 
-  void add(std::uint32_t triangle) {
-    touched_.set(snapped_.corners(triangle), snapped_.bits, box_);
+  void add(std::uint32_t triangle, const Voxel& corner, const CellBox& box) {
+    touched_.set(snapped_.corners(triangle), snapped_.bits, box);
     // Relative to the centre of the brick's first voxel.
     std::array<Vec3, 3> corners = corners_of(snapped_.mesh, triangle);
-    const Vec3 first{corner_[0] + 0.5, corner_[1] + 0.5, corner_[2] + 0.5};
+    const Vec3 first{corner[0] + 0.5, corner[1] + 0.5, corner[2] + 0.5};
     for (Vec3& p : corners) p = (p - snapped_.grid.origin) * (1.0 / snapped_.grid.side) - first;
     const NearestPoints surface(corners);
-    touched_.for_each([&](const std::array<std::int32_t, 3>& v) {
-      const std::int32_t i = v[0] - corner_[0], j = v[1] - corner_[1], k = v[2] - corner_[2];
-      const Vec3 center{double(i), double(j), double(k)};
-      std::uint16_t& slot = slots_[static_cast<std::size_t>((k << kBrickBits | j) << kBrickBits | i)];
+    touched_.for_each([&](const Voxel& v) {
+      const Vec3 center{double(v[0] - corner[0]), double(v[1] - corner[1]), double(v[2] - corner[2])};
+      Site& site = sites_.at(v);
       const double height = surface.height(center);
-      if (slot != 0 && height * height >= sites_[slot - 1u].squared_distance) return;
+      if (height * height >= site.squared_distance) return;
       const Vec3 offset = surface.nearest(center, height) - center;
       const double squared = squared_norm(offset);
-      if (slot == 0) {
-        sites_.push_back({std::numeric_limits<double>::infinity(), 0, 0, 0, 0});
-        slot = static_cast<std::uint16_t>(sites_.size());
-      }
-      if (squared < sites_[slot - 1u].squared_distance)
-        sites_[slot - 1u] = {squared, float(offset.x), float(offset.y), float(offset.z), triangle};
+      if (squared < site.squared_distance)
+        site = {squared, float(offset.x), float(offset.y), float(offset.z), triangle};
     });
   }
 
-  /// Appends the brick's eight tiles and forgets its sites.
-  void finish(SitePart& part) {
-    for (unsigned t = 0; t < 8 && !sites_.empty(); ++t) {
-      const std::array<unsigned, 3> half{t & 1, t >> 1 & 1, t >> 2};
-      VoxelTile tile;
-      for (std::size_t a = 0; a < 3; ++a)
-        tile.at[a] = static_cast<std::uint16_t>(corner_[a] / 8 + std::int32_t(half[a]));
-      std::uint64_t any = 0;
-      for (unsigned z = 0; z < 8; ++z)
-        for (unsigned y = 0; y < 8; ++y) {
-          std::uint16_t* row = &slots_[((8 * half[2] + z) * kBrick + 8 * half[1] + y) * kBrick + 8 * half[0]];
-          for (unsigned x = 0; x < 8; ++x)
-            if (row[x] != 0) {
-              tile.layers[z] |= VoxelTile::bit(x, y);
-              append(sites_[row[x] - 1u], part);
-              row[x] = 0;
-            }
-          any |= tile.layers[z];
-        }
-      if (any != 0) part.tiles.push_back(tile);
-    }
-    sites_.clear();
-  }
-
-  void append(const Site& site, SitePart& part) const {
-    const auto h = static_cast<float>(snapped_.grid.side);
-    part.x.push_back(h * site.x), part.y.push_back(h * site.y), part.z.push_back(h * site.z);
-    part.source.push_back(site.source);
-  }
-
   const SnappedMesh& snapped_;
-  CellBox whole_, box_{};
-  std::array<std::int32_t, 3> corner_{};
+  CellBox whole_;
   TriangleCells touched_;
-  std::vector<std::uint16_t> slots_ = std::vector<std::uint16_t>(kBrick * kBrick * kBrick);  // site + 1; 0: none
-  std::vector<Site> sites_;
+  BrickSites<Site> sites_;
 };
 
 std::vector<PackedNormal> triangle_normals(const SnappedMesh& snapped, const Run& run) {
@@ -219,17 +179,12 @@ SiteVoxels voxelize_mesh(const Mesh& mesh, const VoxelGrid& grid, Run& run) {
   return with_threads(run, [&] {
     const SnappedMesh snapped = snap(mesh, grid, run);
     std::size_t outside = 0;
-    std::vector<std::uint64_t> pairs = bin_triangles(snapped, outside, run);
-    const std::vector<KeyRun> bricks = runs_of(pairs);
-    std::vector<SitePart> parts((bricks.size() + kBricksPerPart - 1) / kBricksPerPart);
-    parallel_for(run, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    const std::vector<std::uint64_t> pairs = bin_triangles(snapped, outside, run);
+    const std::vector<BrickItems> bricks = bricks_of(pairs);
+    SiteVoxels sites = collect_sites(grid, bricks, run, [&](std::span<const BrickItems> some, SitePart& part) {
       BrickVoxelizer voxelizer(snapped);
-      for (std::size_t p = begin; p < end; ++p)
-        for (std::size_t b = p * kBricksPerPart; b < std::min(bricks.size(), (p + 1) * kBricksPerPart); ++b)
-          voxelizer.voxelize(bricks[b], pairs, parts[p]);
+      for (const BrickItems& brick : some) voxelizer.voxelize(brick, part);
     });
-    std::vector<std::uint64_t>().swap(pairs);
-    SiteVoxels sites = join_parts(grid, parts, run);
     sites.outside = outside;
     const std::vector<PackedNormal> normals = triangle_normals(snapped, run);
     sites.normal.resize(sites.size());
