@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -51,17 +52,23 @@ class BrickSites {
   /// The site of a voxel of the brick; a new one when there is none.
   Site& at(const Voxel& v) {
     const std::int32_t i = v[0] - corner_[0], j = v[1] - corner_[1], k = v[2] - corner_[2];
-    std::uint16_t& slot = slots_[static_cast<std::size_t>((k << brick_bits | j) << brick_bits | i)];
-    if (slot == 0) {
-      sites_.emplace_back();
+    const auto row = static_cast<std::size_t>(k << brick_bits | j);
+    std::uint16_t& slot = slots_[row << brick_bits | static_cast<std::size_t>(i)];
+    if ((rows_[row] >> i & 1) == 0) {
+      rows_[row] = static_cast<std::uint16_t>(rows_[row] | 1u << i);
       slot = static_cast<std::uint16_t>(sites_.size());
+      sites_.emplace_back();
     }
-    return sites_[slot - 1u];
+    return sites_[slot];
   }
-  /// Calls append(site, voxel) for all sites in the order of their tiles, adds the tiles to the part, and forgets them.
-  template <typename Append>
-  void finish(SitePart& part, const Append& append) {
-    for (unsigned t = 0; t < 8 && !sites_.empty(); ++t) {
+  /// Sites found so far in the brick.
+  std::size_t size() const { return sites_.size(); }
+  /// Calls use(i, site) for the i-th of all sites in the order of their tiles, adds the tiles to the part, and forgets
+  /// them.
+  template <typename Use>
+  void finish(SitePart& part, const Use& use) {
+    std::size_t next = 0;
+    for (unsigned t = 0; t < 8; ++t) {
       const std::array<unsigned, 3> half{t & 1, t >> 1 & 1, t >> 2};
       VoxelTile tile;
       for (std::size_t a = 0; a < 3; ++a)
@@ -69,31 +76,24 @@ class BrickSites {
       std::uint64_t any = 0;
       for (unsigned z = 0; z < tile_size; ++z) {
         for (unsigned y = 0; y < tile_size; ++y) {
-          const unsigned row = ((tile_size * half[2] + z) << brick_bits) + tile_size * half[1] + y;
-          finish_row(&slots_[(std::size_t{row} << brick_bits) + tile_size * half[0]], y, z, tile, append);
+          const std::size_t row = ((tile_size * half[2] + z) << brick_bits) + tile_size * half[1] + y;
+          const unsigned bits = rows_[row] >> (tile_size * half[0]) & 255u;
+          tile.layers[z] |= std::uint64_t{bits} << (tile_size * y);
+          const std::uint16_t* slots = &slots_[(row << brick_bits) + tile_size * half[0]];
+          for (unsigned left = bits; left != 0; left &= left - 1) use(next++, sites_[slots[std::countr_zero(left)]]);
         }
         any |= tile.layers[z];
       }
       if (any != 0) part.tiles.push_back(tile);
     }
     sites_.clear();
+    rows_ = {};
   }
 
  private:
-  template <typename Append>
-  void finish_row(std::uint16_t* row, unsigned y, unsigned z, VoxelTile& tile, const Append& append) {
-    const Voxel corner = tile.corner();
-    for (unsigned x = 0; x < tile_size; ++x) {
-      if (row[x] == 0) continue;
-      tile.layers[z] |= VoxelTile::bit(x, y);
-      append(sites_[row[x] - 1u],
-             Voxel{corner[0] + std::int32_t(x), corner[1] + std::int32_t(y), corner[2] + std::int32_t(z)});
-      row[x] = 0;
-    }
-  }
-
   Voxel corner_{};
-  std::vector<std::uint16_t> slots_ = std::vector<std::uint16_t>(1 << (3 * brick_bits));  // site + 1; 0: none
+  std::array<std::uint16_t, 1 << (2 * brick_bits)> rows_{};  // bit x: there is a site
+  std::vector<std::uint16_t> slots_ = std::vector<std::uint16_t>(1 << (3 * brick_bits));
   std::vector<Site> sites_;
 };
 

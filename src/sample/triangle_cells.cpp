@@ -22,11 +22,6 @@ CellRange cells_at(std::int32_t coordinate, int bits) {
   return {coordinate == cell << bits ? cell - 1 : cell, cell};
 }
 
-int floor_int(double v) {
-  const int k = static_cast<int>(v);
-  return k - (k > v ? 1 : 0);
-}
-
 }  // namespace
 
 CellBox cells_of_box(const LatticeTriangle& corners, int bits) {
@@ -116,13 +111,9 @@ int TriangleCells::side_of_plane(std::int32_t u, std::int32_t v, std::int32_t w)
   return normal_[w_] > 0 ? sign : -sign;
 }
 
-// Cells of `bounds` that the plane touches over the square (u, v).
-CellRange TriangleCells::plane_over(std::int32_t u, std::int32_t v, const CellRange& bounds) const {
-  if (!has_plane_) return bounds;
-  const double rise = (u - anchor_u_) * slope_u_ + (v - anchor_v_) * slope_v_;
-  const double low = low_ + rise, high = high_ + rise;
-  CellRange touched{floor_int(low), floor_int(high)};
-  const int near_low = floor_int(low + 0.5), near_high = floor_int(high + 0.5);
+// Replaces what rounding may have got wrong.
+CellRange TriangleCells::settle(std::int32_t u, std::int32_t v, double low, double high, CellRange touched) const {
+  const int near_low = floor_cell(low + 0.5), near_high = floor_cell(high + 0.5);
   if (std::abs(low - near_low) <= near_) {
     const int side = side_of_plane(u + (slope_u_ < 0 ? 1 : 0), v + (slope_v_ < 0 ? 1 : 0), near_low);
     touched.first = side >= 0 ? near_low - 1 : near_low;
@@ -131,7 +122,7 @@ CellRange TriangleCells::plane_over(std::int32_t u, std::int32_t v, const CellRa
     const int side = side_of_plane(u + (slope_u_ > 0 ? 1 : 0), v + (slope_v_ > 0 ? 1 : 0), near_high);
     touched.last = side <= 0 ? near_high : near_high - 1;
   }
-  return bounds.cut(touched);
+  return touched;
 }
 
 }  // namespace evenmesh

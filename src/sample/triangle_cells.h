@@ -64,7 +64,21 @@ class TriangleCells {
   };
 
   void set_plane();
-  CellRange plane_over(std::int32_t u, std::int32_t v, const CellRange& bounds) const;
+  static std::int32_t floor_cell(double v) {
+    const auto cell = static_cast<std::int32_t>(v);
+    return cell - (cell > v ? 1 : 0);
+  }
+  /// Cells of `bounds` that the plane touches over the square (u, v).
+  CellRange plane_over(std::int32_t u, std::int32_t v, const CellRange& bounds) const {
+    if (!has_plane_) return bounds;
+    const double rise = (u - anchor_u_) * slope_u_ + (v - anchor_v_) * slope_v_;
+    const double low = low_ + rise, high = high_ + rise;
+    const CellRange touched{floor_cell(low), floor_cell(high)};
+    const double in_low = low - touched.first, in_high = high - touched.last;
+    const bool sure = in_low > near_ && in_low < 1 - near_ && in_high > near_ && in_high < 1 - near_;
+    return bounds.cut(sure ? touched : settle(u, v, low, high, touched));
+  }
+  CellRange settle(std::int32_t u, std::int32_t v, double low, double high, CellRange touched) const;
   int side_of_plane(std::int32_t u, std::int32_t v, std::int32_t w) const;
   template <typename Add>
   void cut_slabs(std::size_t axis, std::size_t across, const Add& add) const;

@@ -94,20 +94,26 @@ class NearestPoints {
   explicit NearestPoints(const std::array<Vec3, 3>& corners) : corners_(corners) {
     const auto& [a, b, c] = corners;
     normal_ = normalized(area_normal(a, b, c));
-    inward_ = {cross(normal_, b - a), cross(normal_, c - b), cross(normal_, a - c)};
+    inward_ = {normalized(cross(normal_, b - a)), normalized(cross(normal_, c - b)), normalized(cross(normal_, a - c))};
   }
-  /// Distance to the plane, a lower bound; 0 for degenerate triangles.
-  double height(const Vec3& p) const { return dot(normal_, p - corners_[0]); }
-  Vec3 nearest(const Vec3& p, double height) const {
-    if (dot(inward_[0], p - corners_[0]) > 0 && dot(inward_[1], p - corners_[1]) > 0 &&
-        dot(inward_[2], p - corners_[2]) > 0)
-      return p - height * normal_;
-    return closest_point_on_triangle(p, corners_[0], corners_[1], corners_[2]);
+
+  /// Calls found(offset, squared distance) with the way from p to the nearest point when that is shorter than `best`.
+  /// Most triangles are ruled out by p's distances to their planes and the lines of their edges.
+  template <typename Found>
+  void find(const Vec3& p, double best, const Found& found) const {
+    const double height = dot(normal_, p - corners_[0]), height2 = height * height;
+    if (height2 >= best) return;
+    const double within = std::min(
+        {dot(inward_[0], p - corners_[0]), dot(inward_[1], p - corners_[1]), dot(inward_[2], p - corners_[2])});
+    if (within > 0) return found(-height * normal_, height2);
+    if (height2 + within * within > best * (1 + 1e-9)) return;
+    const Vec3 offset = closest_point_on_triangle(p, corners_[0], corners_[1], corners_[2]) - p;
+    if (const double squared = squared_norm(offset); squared < best) found(offset, squared);
   }
 
  private:
   std::array<Vec3, 3> corners_, inward_;
-  Vec3 normal_;
+  Vec3 normal_;  // zero when degenerate: then nothing is ruled out
 };
 
 /// Marks the voxels of one brick after the other.
@@ -122,9 +128,11 @@ class BrickVoxelizer {
     sites_.start(brick.corner);
     for (const std::uint64_t key : brick.keys) add(static_cast<std::uint32_t>(key), brick.corner, box);
     const auto h = static_cast<float>(snapped_.grid.side);
-    sites_.finish(part, [&](const Site& site, const Voxel&) {
-      part.x.push_back(h * site.x), part.y.push_back(h * site.y), part.z.push_back(h * site.z);
-      part.source.push_back(site.source);
+    const std::size_t first = part.x.size(), size = first + sites_.size();
+    part.x.resize(size), part.y.resize(size), part.z.resize(size), part.source.resize(size);
+    sites_.finish(part, [&](std::size_t i, const Site& site) {
+      part.x[first + i] = h * site.x, part.y[first + i] = h * site.y, part.z[first + i] = h * site.z;
+      part.source[first + i] = site.source;
     });
   }
 
@@ -145,12 +153,9 @@ class BrickVoxelizer {
     touched_.for_each([&](const Voxel& v) {
       const Vec3 center{double(v[0] - corner[0]), double(v[1] - corner[1]), double(v[2] - corner[2])};
       Site& site = sites_.at(v);
-      const double height = surface.height(center);
-      if (height * height >= site.squared_distance) return;
-      const Vec3 offset = surface.nearest(center, height) - center;
-      const double squared = squared_norm(offset);
-      if (squared < site.squared_distance)
+      surface.find(center, site.squared_distance, [&](const Vec3& offset, double squared) {
         site = {squared, float(offset.x), float(offset.y), float(offset.z), triangle};
+      });
     });
   }
 

@@ -32,12 +32,14 @@ Voxel brick_of(const Voxel& v) {
 }
 
 void finish(BrickSites<MeanSite>& sites, double side, bool with_normals, SitePart& part) {
-  sites.finish(part, [&](const MeanSite& site, const Voxel&) {
+  const std::size_t first = part.x.size(), size = first + sites.size();
+  part.x.resize(size), part.y.resize(size), part.z.resize(size), part.normal.resize(with_normals ? size : 0);
+  sites.finish(part, [&](std::size_t i, const MeanSite& site) {
     const Vec3 mean = site.points * (side / site.count);
-    part.x.push_back(static_cast<float>(mean.x));
-    part.y.push_back(static_cast<float>(mean.y));
-    part.z.push_back(static_cast<float>(mean.z));
-    if (with_normals) part.normal.push_back(pack_normal(normalized(site.normals)));
+    part.x[first + i] = static_cast<float>(mean.x);
+    part.y[first + i] = static_cast<float>(mean.y);
+    part.z[first + i] = static_cast<float>(mean.z);
+    if (with_normals) part.normal[first + i] = pack_normal(normalized(site.normals));
   });
 }
 
