@@ -40,61 +40,58 @@ struct BrickItems {
 };
 std::vector<BrickItems> bricks_of(const std::vector<std::uint64_t>& sorted_keys);
 
-/// Collects what is known of the sites of one brick after the other.
+/// Collects what is known of the sites of one brick after the other. A voxel of a brick has a local number of 12 bits:
+/// x, y, z, x the lowest four.
 template <typename Site>
 class BrickSites {
  public:
-  void start(const Voxel& corner) { corner_ = corner; }
-  /// Whether a voxel of the grid lies in the brick.
-  bool contains(const Voxel& v) const {
-    return ((v[0] - corner_[0]) | (v[1] - corner_[1]) | (v[2] - corner_[2])) >> brick_bits == 0;
+  static constexpr std::uint32_t local(std::int32_t i, std::int32_t j, std::int32_t k) {
+    return static_cast<std::uint32_t>((k << brick_bits | j) << brick_bits | i);
   }
-  /// The site of a voxel of the brick; a new one when there is none.
-  Site& at(const Voxel& v) {
-    const std::int32_t i = v[0] - corner_[0], j = v[1] - corner_[1], k = v[2] - corner_[2];
-    const auto row = static_cast<std::size_t>(k << brick_bits | j);
-    std::uint16_t& slot = slots_[row << brick_bits | static_cast<std::size_t>(i)];
-    if ((rows_[row] >> i & 1) == 0) {
-      rows_[row] = static_cast<std::uint16_t>(rows_[row] | 1u << i);
-      slot = static_cast<std::uint16_t>(sites_.size());
-      sites_.emplace_back();
-    }
-    return sites_[slot];
+  /// The site of a voxel, which becomes one.
+  Site& at(std::uint32_t local) {
+    rows_[local >> brick_bits] = static_cast<std::uint16_t>(rows_[local >> brick_bits] | 1u << (local % brick_voxels));
+    return sites_[local];
   }
-  /// Sites found so far in the brick.
-  std::size_t size() const { return sites_.size(); }
+  /// Sites so far.
+  std::size_t size() const {
+    std::size_t sum = 0;
+    for (const std::uint16_t row : rows_) sum += static_cast<std::size_t>(std::popcount(row));
+    return sum;
+  }
   /// Calls use(i, site) for the i-th of all sites in the order of their tiles, adds the tiles to the part, and forgets
-  /// them.
+  /// them. @param corner  the brick's first voxel
   template <typename Use>
-  void finish(SitePart& part, const Use& use) {
+  void finish(const Voxel& corner, SitePart& part, const Use& use) {
     std::size_t next = 0;
     for (unsigned t = 0; t < 8; ++t) {
       const std::array<unsigned, 3> half{t & 1, t >> 1 & 1, t >> 2};
       VoxelTile tile;
       for (std::size_t a = 0; a < 3; ++a)
-        tile.at[a] = static_cast<std::uint16_t>(static_cast<unsigned>(corner_[a]) / tile_size + half[a]);
+        tile.at[a] = static_cast<std::uint16_t>(static_cast<unsigned>(corner[a]) / tile_size + half[a]);
       std::uint64_t any = 0;
       for (unsigned z = 0; z < tile_size; ++z) {
         for (unsigned y = 0; y < tile_size; ++y) {
           const std::size_t row = ((tile_size * half[2] + z) << brick_bits) + tile_size * half[1] + y;
           const unsigned bits = rows_[row] >> (tile_size * half[0]) & 255u;
           tile.layers[z] |= std::uint64_t{bits} << (tile_size * y);
-          const std::uint16_t* slots = &slots_[(row << brick_bits) + tile_size * half[0]];
-          for (unsigned left = bits; left != 0; left &= left - 1) use(next++, sites_[slots[std::countr_zero(left)]]);
+          Site* sites = &sites_[(row << brick_bits) + tile_size * half[0]];
+          for (unsigned left = bits; left != 0; left &= left - 1) {
+            Site& site = sites[std::countr_zero(left)];
+            use(next++, site);
+            site = {};
+          }
         }
         any |= tile.layers[z];
       }
       if (any != 0) part.tiles.push_back(tile);
     }
-    sites_.clear();
     rows_ = {};
   }
 
  private:
-  Voxel corner_{};
-  std::array<std::uint16_t, 1 << (2 * brick_bits)> rows_{};  // bit x: there is a site
-  std::vector<std::uint16_t> slots_ = std::vector<std::uint16_t>(1 << (3 * brick_bits));
-  std::vector<Site> sites_;
+  std::array<std::uint16_t, 1 << (2 * brick_bits)> rows_{};  // by y and z: bit x
+  std::vector<Site> sites_ = std::vector<Site>(1 << (3 * brick_bits));
 };
 
 /// Calls work(bricks, part) for pieces of neighbouring bricks, in parallel, and joins the parts.

@@ -88,32 +88,72 @@ std::vector<std::uint64_t> bin_triangles(const SnappedMesh& snapped, std::size_t
   return pairs;
 }
 
-/// The points of a triangle nearest to many others; everything in voxels.
-class NearestPoints {
+/// The nearest surface point so far of one voxel; everything in voxels, relative to its centre.
+struct NearestSurface {
+  float squared_distance = std::numeric_limits<float>::infinity();
+  float x = 0, y = 0, z = 0;
+  std::uint32_t source = 0;
+};
+using Sites = BrickSites<NearestSurface>;
+
+/// Distances of points to the plane of a triangle and to its edges' lines within the plane; in float, but from values
+/// near the brick that were computed in double.
+class TriangleFrame {
  public:
-  explicit NearestPoints(const std::array<Vec3, 3>& corners) : corners_(corners) {
+  /// @param corners  in voxels, relative to the centre of the brick's first voxel
+  explicit TriangleFrame(const std::array<Vec3, 3>& corners) : corners_(corners) {
     const auto& [a, b, c] = corners;
-    normal_ = normalized(area_normal(a, b, c));
-    inward_ = {normalized(cross(normal_, b - a)), normalized(cross(normal_, c - b)), normalized(cross(normal_, a - c))};
+    const Vec3 normal = normalized(area_normal(a, b, c));
+    axes_[0] = axis(normal, a);
+    axes_[1] = axis(normalized(cross(normal, b - a)), a);
+    axes_[2] = axis(normalized(cross(normal, c - b)), b);
+    axes_[3] = axis(normalized(cross(normal, a - c)), c);
   }
 
-  /// Calls found(offset, squared distance) with the way from p to the nearest point when that is shorter than `best`.
-  /// Most triangles are ruled out by p's distances to their planes and the lines of their edges.
-  template <typename Found>
-  void find(const Vec3& p, double best, const Found& found) const {
-    const double height = dot(normal_, p - corners_[0]), height2 = height * height;
-    if (height2 >= best) return;
-    const double within = std::min(
-        {dot(inward_[0], p - corners_[0]), dot(inward_[1], p - corners_[1]), dot(inward_[2], p - corners_[2])});
-    if (within > 0) return found(-height * normal_, height2);
-    if (height2 + within * within > best * (1 + 1e-9)) return;
-    const Vec3 offset = closest_point_on_triangle(p, corners_[0], corners_[1], corners_[2]) - p;
-    if (const double squared = squared_norm(offset); squared < best) found(offset, squared);
+  /// Of each voxel centre: height[i] above the plane, and how far its foot lies within the triangle (negative: beyond
+  /// an edge). Both 0 for degenerate triangles, which so rule nothing out.
+  void measure(std::span<const std::uint32_t> voxels, float* height, float* within) const {
+    const Axis n = axes_[0], e = axes_[1], f = axes_[2], g = axes_[3];
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      const auto v = static_cast<std::int32_t>(voxels[i]);
+      const auto x = static_cast<float>(v & (brick_voxels - 1));
+      const auto y = static_cast<float>(v >> brick_bits & (brick_voxels - 1));
+      const auto z = static_cast<float>(v >> (2 * brick_bits));
+      const float p = e.x * x + e.y * y + e.z * z - e.at, q = f.x * x + f.y * y + f.z * z - f.at,
+                  r = g.x * x + g.y * y + g.z * z - g.at;
+      const float least = p < q ? p : q;
+      height[i] = n.x * x + n.y * y + n.z * z - n.at;
+      within[i] = least < r ? least : r;
+    }
+  }
+
+  /// Replaces the site's point by the triangle's when that is nearer.
+  void offer(std::uint32_t voxel, float height, float within, std::uint32_t source, NearestSurface& site) const {
+    const float height2 = height * height;
+    if (within > 0) {
+      const Axis& n = axes_[0];
+      if (height2 < site.squared_distance) site = {height2, -height * n.x, -height * n.y, -height * n.z, source};
+      return;
+    }
+    // What lies beyond an edge's line is at least that far away; the slack is for rounding.
+    if (height2 + within * within > site.squared_distance * 1.00001f + 1e-5f) return;
+    const Vec3 center{double(voxel % brick_voxels), double(voxel >> brick_bits & (brick_voxels - 1)),
+                      double(voxel >> (2 * brick_bits))};
+    const Vec3 offset = closest_point_on_triangle(center, corners_[0], corners_[1], corners_[2]) - center;
+    const auto squared = static_cast<float>(squared_norm(offset));
+    if (squared < site.squared_distance) site = {squared, float(offset.x), float(offset.y), float(offset.z), source};
   }
 
  private:
-  std::array<Vec3, 3> corners_, inward_;
-  Vec3 normal_;  // zero when degenerate: then nothing is ruled out
+  struct Axis {
+    float x, y, z, at;  // where the point through which it goes lies along it
+  };
+  static Axis axis(const Vec3& unit, const Vec3& through) {
+    return {float(unit.x), float(unit.y), float(unit.z), float(dot(unit, through))};
+  }
+
+  std::array<Vec3, 3> corners_;
+  std::array<Axis, 4> axes_;
 };
 
 /// Marks the voxels of one brick after the other.
@@ -125,44 +165,39 @@ class BrickVoxelizer {
     CellBox box;
     for (std::size_t a = 0; a < 3; ++a)
       box[a] = CellRange{brick.corner[a], brick.corner[a] + brick_voxels - 1}.cut(whole_[a]);
-    sites_.start(brick.corner);
     for (const std::uint64_t key : brick.keys) add(static_cast<std::uint32_t>(key), brick.corner, box);
     const auto h = static_cast<float>(snapped_.grid.side);
     const std::size_t first = part.x.size(), size = first + sites_.size();
     part.x.resize(size), part.y.resize(size), part.z.resize(size), part.source.resize(size);
-    sites_.finish(part, [&](std::size_t i, const Site& site) {
+    sites_.finish(brick.corner, part, [&](std::size_t i, const NearestSurface& site) {
       part.x[first + i] = h * site.x, part.y[first + i] = h * site.y, part.z[first + i] = h * site.z;
       part.source[first + i] = site.source;
     });
   }
 
  private:
-  struct Site {
-    double squared_distance = std::numeric_limits<double>::infinity();
-    float x = 0, y = 0, z = 0;  // in voxels
-    std::uint32_t source = 0;
-  };
+  static constexpr std::size_t kVoxels = std::size_t{1} << (3 * brick_bits);
 
   void add(std::uint32_t triangle, const Voxel& corner, const CellBox& box) {
     touched_.set(snapped_.corners(triangle), snapped_.bits, box);
-    // Relative to the centre of the brick's first voxel.
+    std::size_t count = 0;
+    touched_.for_each(
+        [&](const Voxel& v) { voxels_[count++] = Sites::local(v[0] - corner[0], v[1] - corner[1], v[2] - corner[2]); });
     std::array<Vec3, 3> corners = corners_of(snapped_.mesh, triangle);
     const Vec3 first{corner[0] + 0.5, corner[1] + 0.5, corner[2] + 0.5};
     for (Vec3& p : corners) p = (p - snapped_.grid.origin) * (1.0 / snapped_.grid.side) - first;
-    const NearestPoints surface(corners);
-    touched_.for_each([&](const Voxel& v) {
-      const Vec3 center{double(v[0] - corner[0]), double(v[1] - corner[1]), double(v[2] - corner[2])};
-      Site& site = sites_.at(v);
-      surface.find(center, site.squared_distance, [&](const Vec3& offset, double squared) {
-        site = {squared, float(offset.x), float(offset.y), float(offset.z), triangle};
-      });
-    });
+    const TriangleFrame frame(corners);
+    frame.measure(std::span(voxels_).first(count), height_.data(), within_.data());
+    for (std::size_t i = 0; i < count; ++i)
+      frame.offer(voxels_[i], height_[i], within_[i], triangle, sites_.at(voxels_[i]));
   }
 
   const SnappedMesh& snapped_;
   CellBox whole_;
   TriangleCells touched_;
-  BrickSites<Site> sites_;
+  std::vector<std::uint32_t> voxels_ = std::vector<std::uint32_t>(kVoxels);  // that one triangle touches
+  std::vector<float> height_ = std::vector<float>(kVoxels), within_ = std::vector<float>(kVoxels);
+  Sites sites_;
 };
 
 std::vector<PackedNormal> triangle_normals(const SnappedMesh& snapped, const Run& run) {

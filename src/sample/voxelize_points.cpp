@@ -31,10 +31,17 @@ Voxel brick_of(const Voxel& v) {
   return {v[0] >> brick_bits, v[1] >> brick_bits, v[2] >> brick_bits};
 }
 
-void finish(BrickSites<MeanSite>& sites, double side, bool with_normals, SitePart& part) {
+/// The site of a voxel of the brick at `corner`; nullptr for voxels of other bricks.
+MeanSite* site_of(BrickSites<MeanSite>& sites, const Voxel& v, const Voxel& corner) {
+  const std::int32_t i = v[0] - corner[0], j = v[1] - corner[1], k = v[2] - corner[2];
+  if ((i | j | k) >> brick_bits != 0) return nullptr;
+  return &sites.at(BrickSites<MeanSite>::local(i, j, k));
+}
+
+void finish(BrickSites<MeanSite>& sites, const Voxel& corner, double side, bool with_normals, SitePart& part) {
   const std::size_t first = part.x.size(), size = first + sites.size();
   part.x.resize(size), part.y.resize(size), part.z.resize(size), part.normal.resize(with_normals ? size : 0);
-  sites.finish(part, [&](std::size_t i, const MeanSite& site) {
+  sites.finish(corner, part, [&](std::size_t i, const MeanSite& site) {
     const Vec3 mean = site.points * (side / site.count);
     part.x[first + i] = static_cast<float>(mean.x);
     part.y[first + i] = static_cast<float>(mean.y);
@@ -119,7 +126,7 @@ std::vector<std::uint64_t> bin_blocks(const SampleSet& samples, const VoxelGrid&
 
 /// Adds the samples of a block to those of the brick's voxels on whose edges they lie.
 void add_block(const SampleSet& samples, const SampleBlock& block, const VoxelGrid& grid, unsigned margin,
-               BrickSites<MeanSite>& sites) {
+               const Voxel& corner, BrickSites<MeanSite>& sites) {
   const Vec3 center = samples.block_center(block);
   for (std::uint32_t s = block.begin; s < block.end; ++s) {
     const EdgeCells cells = cells_around(block, samples.edge[s]);
@@ -129,7 +136,8 @@ void add_block(const SampleSet& samples, const SampleBlock& block, const VoxelGr
       Voxel v = cells.first;
       v[cells.p] += c & 1, v[cells.q] += c >> 1;
       for (std::int32_t& i : v) i += static_cast<std::int32_t>(margin);
-      if (grid.contains(v) && sites.contains(v)) sites.at(v).add(point - center_in_voxels(v), normal);
+      if (!grid.contains(v)) continue;
+      if (MeanSite* site = site_of(sites, v, corner)) site->add(point - center_in_voxels(v), normal);
     }
   }
 }
@@ -142,10 +150,9 @@ SiteVoxels voxelize_on(const SampleSet& samples, const VoxelGrid& grid, unsigned
   return collect_sites(grid, bricks, run, [&](std::span<const BrickItems> some, SitePart& part) {
     BrickSites<MeanSite> sites;
     for (const BrickItems& brick : some) {
-      sites.start(brick.corner);
       for (const std::uint64_t key : brick.keys)
-        add_block(samples, samples.blocks[static_cast<std::uint32_t>(key)], grid, margin, sites);
-      finish(sites, grid.side, true, part);
+        add_block(samples, samples.blocks[static_cast<std::uint32_t>(key)], grid, margin, brick.corner, sites);
+      finish(sites, brick.corner, grid.side, true, part);
     }
   });
 }
@@ -161,13 +168,13 @@ SiteVoxels voxelize_points(std::span<const Vec3> points, std::span<const Vec3> n
     SiteVoxels sites = collect_sites(grid, bricks, run, [&](std::span<const BrickItems> some, SitePart& part) {
       BrickSites<MeanSite> means;
       for (const BrickItems& brick : some) {
-        means.start(brick.corner);
         for (const std::uint64_t key : brick.keys) {
           const auto i = static_cast<std::uint32_t>(key);
           const Voxel v = voxel_of(points[i], grid);
-          means.at(v).add(in_voxels(points[i], grid) - center_in_voxels(v), normals.empty() ? Vec3{} : normals[i]);
+          site_of(means, v, brick.corner)
+              ->add(in_voxels(points[i], grid) - center_in_voxels(v), normals.empty() ? Vec3{} : normals[i]);
         }
-        finish(means, grid.side, !normals.empty(), part);
+        finish(means, brick.corner, grid.side, !normals.empty(), part);
       }
     });
     sites.outside = points.size() - keys.size();
