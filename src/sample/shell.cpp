@@ -140,7 +140,7 @@ class PieceBuilder {
       tile.layers = out.layers;
       piece.tiles.push_back(tile);
       piece.start.push_back(collected_.size());
-      for (unsigned i = 0; i < out.count; ++i) collected_.push_back({out.keys[i]});
+      collected_.insert(collected_.end(), out.nearest.begin(), out.nearest.begin() + out.count);
     }
   }
 

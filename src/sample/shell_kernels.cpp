@@ -54,7 +54,7 @@ HWY_INLINE void keep(const Row& row, const std::uint32_t* limits, unsigned y, un
     hn::StoreMaskBits(D(), within, bytes);
     bits[x / 8] |= std::uint64_t{bytes[0]} << (x % 8);
     tile.count += static_cast<unsigned>(
-        hn::CompressStore(row.part[i], within, D(), reinterpret_cast<std::int32_t*>(tile.keys.data()) + tile.count));
+        hn::CompressStore(row.part[i], within, D(), reinterpret_cast<std::int32_t*>(tile.nearest.data()) + tile.count));
   }
   for (unsigned half = 0; half < 2; ++half) tiles[half].layers[z] |= bits[half] << (8 * y);
 }

@@ -40,7 +40,7 @@ struct ShellWindow {
 struct ShellTileOut {
   std::array<std::uint64_t, 8> layers;
   unsigned count;
-  std::array<std::uint32_t, 512 + 8> keys;  ///< some room behind the end for whole vectors
+  std::array<NearestSite, 512 + 8> nearest;  ///< some room behind the end for whole vectors
 };
 using ShellBlockOut = std::array<ShellTileOut, 8>;
 
