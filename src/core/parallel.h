@@ -3,10 +3,12 @@
 
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "evenmesh/run.h"
 
@@ -39,6 +41,13 @@ void parallel_tasks(const Run& run, std::size_t count, const Body& body) {
   parallel_for(run, count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
+}
+
+/// Sorts ascending. Items that compare equal must be the same: then so is the result for any number of threads.
+template <typename Item>
+void parallel_sort(const Run& run, std::vector<Item>& items) {
+  run.throw_if_cancelled();
+  tbb::parallel_sort(items.begin(), items.end());
 }
 
 }  // namespace evenmesh

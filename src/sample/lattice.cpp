@@ -10,21 +10,10 @@
 namespace evenmesh {
 namespace {
 
-constexpr double kLargest = 759250124.0;  // 2^29.5: differences of coordinates stay below 2^30.5
+constexpr double kLargest = largest_lattice_coordinate;
 
 std::size_t at(int axis) {
   return static_cast<std::size_t>(axis);
-}
-
-void check_mesh(const Mesh& mesh, const Run& run) {
-  const std::size_t count = mesh.vertices.size();
-  parallel_for(run, mesh.triangles.size(), 32768, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t)
-      for (const std::uint32_t v : mesh.triangles[t]) {
-        if (v >= count) throw InvalidInput("triangle " + std::to_string(t) + " refers to a vertex that does not exist");
-        if (!is_finite(mesh.vertices[v])) throw InvalidInput("vertex " + std::to_string(v) + " is not finite");
-      }
-  });
 }
 
 // Grid points strictly within the bounds; the grid's outermost layer never counts as inside.
@@ -40,19 +29,6 @@ void set_range(Lattice& lattice, const Grid& grid, const Box& bounds) {
     lattice.first[at(a)] = static_cast<std::int32_t>(std::ceil(lo));
     lattice.last[at(a)] = static_cast<std::int32_t>(std::floor(hi));
   }
-}
-
-void snap_vertices(Lattice& lattice, const Mesh& mesh, const Grid& grid, const Run& run) {
-  const double scale = std::ldexp(1.0 / grid.spacing, lattice.bits);
-  lattice.points.resize(mesh.vertices.size());
-  parallel_for(run, mesh.vertices.size(), 8192, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      for (int a = 0; a < 3; ++a) {
-        const double c = (mesh.vertices[v][a] - grid.origin[a]) * scale;
-        // Only vertices without triangles can be out of range here; written so that NaN gives 0.
-        lattice.points[v][at(a)] = std::abs(c) <= kLargest ? static_cast<std::int32_t>(std::floor(c + 0.5)) : 0;
-      }
-  });
 }
 
 // Largest number of bits for which the mesh fits, and whether it leaves the range.
@@ -170,12 +146,38 @@ void bin_triangles(Lattice& lattice, const Mesh& mesh, const Grid& grid, const R
 
 }  // namespace
 
+void check_mesh(const Mesh& mesh, const Run& run) {
+  const std::size_t count = mesh.vertices.size();
+  parallel_for(run, mesh.triangles.size(), 32768, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      for (const std::uint32_t v : mesh.triangles[t]) {
+        if (v >= count) throw InvalidInput("triangle " + std::to_string(t) + " refers to a vertex that does not exist");
+        if (!is_finite(mesh.vertices[v])) throw InvalidInput("vertex " + std::to_string(v) + " is not finite");
+      }
+  });
+}
+
+std::vector<LatticePoint> snap_vertices(const Mesh& mesh, const Vec3& origin, double spacing, int bits,
+                                        const Run& run) {
+  const double scale = std::ldexp(1.0 / spacing, bits);
+  std::vector<LatticePoint> points(mesh.vertices.size());
+  parallel_for(run, mesh.vertices.size(), 8192, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      for (int a = 0; a < 3; ++a) {
+        const double c = (mesh.vertices[v][a] - origin[a]) * scale;
+        // Only vertices without triangles can be out of range here; written so that NaN gives 0.
+        points[v][at(a)] = std::abs(c) <= kLargest ? static_cast<std::int32_t>(std::floor(c + 0.5)) : 0;
+      }
+  });
+  return points;
+}
+
 Lattice make_lattice(const Mesh& mesh, const Grid& grid, const Box& bounds, const Run& run) {
   Lattice lattice;
   check_mesh(mesh, run);
   set_range(lattice, grid, bounds);
   choose_scale(lattice, mesh, grid, !bounds.empty());
-  snap_vertices(lattice, mesh, grid, run);
+  lattice.points = snap_vertices(mesh, grid.origin, grid.spacing, lattice.bits, run);
   lattice.closed = has_no_boundary(lattice, mesh, run);
   bin_triangles(lattice, mesh, grid, run);
   return lattice;

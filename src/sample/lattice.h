@@ -13,6 +13,15 @@ namespace evenmesh {
 
 using LatticePoint = std::array<std::int32_t, 3>;
 
+/// 2^29.5: no coordinate is larger, so that differences stay below 2^30.5.
+inline constexpr double largest_lattice_coordinate = 759250124.0;
+
+/// @throws InvalidInput  a triangle's index is out of range, or a coordinate that it uses is not finite
+void check_mesh(const Mesh& mesh, const Run& run);
+
+/// Vertices in units of 2^-bits · spacing from `origin`, rounded to nearest. What is out of range becomes 0.
+std::vector<LatticePoint> snap_vertices(const Mesh& mesh, const Vec3& origin, double spacing, int bits, const Run& run);
+
 /// Triangles per slab, CSR.
 struct SlabBins {
   std::vector<std::uint32_t> begin, triangles;
