@@ -7,7 +7,7 @@
 
 namespace evenmesh {
 
-void resize_samples(SampleSet& set, std::size_t count, bool with_edges, bool with_sources, const Run& run) {
+void resize_samples(SampleSet& set, std::size_t count, bool with_sources, const Run& run) {
   if (count > std::numeric_limits<std::uint32_t>::max())
     throw InvalidInput("more than 4 billion samples: lower the resolution");
   parallel_tasks(run, 7, [&](std::size_t i) {
@@ -28,7 +28,7 @@ void resize_samples(SampleSet& set, std::size_t count, bool with_edges, bool wit
         set.normal.resize(count);
         break;
       case 5:
-        set.edge.resize(with_edges ? count : 0);
+        set.edge.resize(count);
         break;
       default:
         set.source.resize(with_sources ? count : 0);

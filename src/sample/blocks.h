@@ -9,8 +9,8 @@
 namespace evenmesh {
 
 /// Sizes all arrays, in parallel: touching fresh memory costs as much as filling it.
-/// @param with_edges, with_sources  whether those arrays are used
-void resize_samples(SampleSet& set, std::size_t count, bool with_edges, bool with_sources, const Run& run);
+/// @param with_sources  whether that array is used
+void resize_samples(SampleSet& set, std::size_t count, bool with_sources, const Run& run);
 
 /// Sets every block's axis_begin from the edge codes.
 void mark_axes(SampleSet& set, const Run& run);

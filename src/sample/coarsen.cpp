@@ -1,33 +1,14 @@
-#include <cmath>
-
 #include "sample/blocks.h"
 #include "sample/sample.h"
 
 namespace evenmesh {
 namespace {
 
-// Whether a sample lies on a ray that the coarser grid has too: its two coordinates across the ray are even.
-class Keeper {
- public:
-  explicit Keeper(const SampleSet& set) : set_(set), cells_per_unit_(static_cast<float>(1.0 / set.grid.spacing)) {}
-
-  bool operator()(std::uint32_t i, int axis) const {
-    if (!set_.edge.empty()) return (set_.edge[i].bits & kOddAcross[axis]) == 0;
-    if (axis != 0 && is_odd(set_.x[i])) return false;
-    if (axis != 1 && is_odd(set_.y[i])) return false;
-    return axis == 2 || !is_odd(set_.z[i]);
-  }
-
- private:
-  // The lowest bits of the two cell indices across a ray, in EdgeCode.
-  static constexpr unsigned kOddAcross[3] = {1u << 4 | 1u << 1, 1u << 7 | 1u << 1, 1u << 7 | 1u << 4};
-
-  // Block centres lie on even grid points, so the parity of the offset is that of the grid point.
-  bool is_odd(float offset) const { return (static_cast<int>(std::lrint(offset * cells_per_unit_)) & 1) != 0; }
-
-  const SampleSet& set_;
-  float cells_per_unit_;
-};
+// Whether a sample of the axis lies on a ray that the coarser grid has too: its two coordinates across the ray are even.
+bool is_kept(EdgeCode code, int axis) {
+  constexpr unsigned odd_across[3] = {1u << 4 | 1u << 1, 1u << 7 | 1u << 1, 1u << 7 | 1u << 4};
+  return (code.bits & odd_across[axis]) == 0;
+}
 
 struct CoarseBlock {
   std::uint32_t first_child, children;
@@ -48,16 +29,23 @@ std::vector<CoarseBlock> group_blocks(const SampleSet& fine) {
   return groups;
 }
 
-void copy_block(const SampleSet& fine, const SampleBlock& from, int axis, const Keeper& keep, SampleSet& coarse,
-                std::uint32_t& out) {
+void copy_block(const SampleSet& fine, const SampleBlock& from, int axis, SampleSet& coarse, std::uint32_t& out) {
   const float h = static_cast<float>(fine.grid.spacing);
   float shift[3];
-  for (std::size_t a = 0; a < 3; ++a) shift[a] = (from.brick[a] % 2 ? 0.5f : -0.5f) * brick_size * h;
+  unsigned first_cell[3];
+  for (std::size_t a = 0; a < 3; ++a) {
+    const bool upper = from.brick[a] % 2 != 0;
+    shift[a] = (upper ? 0.5f : -0.5f) * brick_size * h;
+    first_cell[a] = upper ? brick_size / 2 : 0;
+  }
   for (std::uint32_t i = from.begin_of_axis(axis); i < from.end_of_axis(axis); ++i) {
-    if (!keep(i, axis)) continue;
+    const EdgeCode code = fine.edge[i];
+    if (!is_kept(code, axis)) continue;
     coarse.x[out] = fine.x[i] + shift[0], coarse.y[out] = fine.y[i] + shift[1], coarse.z[out] = fine.z[i] + shift[2];
     coarse.area[out] = 4.0f * fine.area[i];
     coarse.normal[out] = fine.normal[i];
+    coarse.edge[out] = EdgeCode(code.axis(), first_cell[0] + code.i() / 2, first_cell[1] + code.j() / 2,
+                                first_cell[2] + code.k() / 2, code.lower_end_inside());
     if (!fine.source.empty()) coarse.source[out] = fine.source[i];
     ++out;
   }
@@ -72,7 +60,6 @@ SampleSet coarsen(const SampleSet& fine, Run& run) {
     for (std::uint32_t& n : coarse.grid.size) n = n / 2 + 1;
     coarse.disagreements = fine.disagreements, coarse.unresolved = fine.unresolved;
     coarse.cut_by_bounds = fine.cut_by_bounds;
-    const Keeper keep(fine);
     const std::vector<CoarseBlock> groups = group_blocks(fine);
     std::vector<std::uint32_t> kept(groups.size());
     parallel_for(run, groups.size(), 32, [&](std::size_t begin, std::size_t end) {
@@ -81,7 +68,7 @@ SampleSet coarsen(const SampleSet& fine, Run& run) {
           const SampleBlock& block = fine.blocks[groups[g].first_child + c];
           for (int axis = 0; axis < 3; ++axis)
             for (std::uint32_t i = block.begin_of_axis(axis); i < block.end_of_axis(axis); ++i)
-              kept[g] += keep(i, axis) ? 1 : 0;
+              kept[g] += is_kept(fine.edge[i], axis) ? 1 : 0;
         }
       }
     });
@@ -96,7 +83,7 @@ SampleSet coarsen(const SampleSet& fine, Run& run) {
       child.push_back(static_cast<std::uint32_t>(g));
       sum += kept[g];
     }
-    resize_samples(coarse, sum, false, !fine.source.empty(), run);
+    resize_samples(coarse, sum, !fine.source.empty(), run);
     parallel_for(run, coarse.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         const CoarseBlock& group = groups[child[b]];
@@ -104,7 +91,7 @@ SampleSet coarsen(const SampleSet& fine, Run& run) {
         for (int axis = 0; axis < 3; ++axis) {
           if (axis > 0) coarse.blocks[b].axis_begin[static_cast<std::size_t>(axis) - 1] = out;
           for (std::uint32_t c = 0; c < group.children; ++c)
-            copy_block(fine, fine.blocks[group.first_child + c], axis, keep, coarse, out);
+            copy_block(fine, fine.blocks[group.first_child + c], axis, coarse, out);
         }
       }
     });

@@ -248,7 +248,7 @@ SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const Run& run)
   const PlacedAxes placed = place_all(solid, run);
   const std::vector<Piece> pieces = sorted_pieces(placed);
   const std::vector<std::uint32_t> first = make_blocks(pieces, set);
-  resize_samples(set, set.blocks.empty() ? 0 : set.blocks.back().end, true, true, run);
+  resize_samples(set, set.blocks.empty() ? 0 : set.blocks.back().end, true, run);
   parallel_for(run, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     BlockWriter writer(normals, set);
     for (std::size_t b = begin; b < end; ++b) {

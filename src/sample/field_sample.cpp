@@ -115,7 +115,7 @@ SampleSet join_parts(const Grid& grid, std::vector<FieldPart>& parts, const Run&
     count += part.x.size();
     set.cut_by_bounds = set.cut_by_bounds || part.cut_by_bounds;
   }
-  resize_samples(set, count, true, false, run);
+  resize_samples(set, count, false, run);
   parallel_for(run, parts.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       FieldPart& part = parts[i];

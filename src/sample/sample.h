@@ -16,7 +16,7 @@ namespace evenmesh {
 SampleSet sample_shape(const Shape& shape, const Grid& grid, Run& run = Run::silent());
 
 /// Every other ray of `fine` in both directions across it: the samples of a grid with twice the spacing (several per
-/// edge are kept), areas times four, in blocks of that grid's bricks. Cost: O(samples).
+/// edge are kept), areas times four, in blocks of that grid's bricks with edge codes of that grid. Cost: O(samples).
 SampleSet coarsen(const SampleSet& fine, Run& run = Run::silent());
 
 }  // namespace evenmesh

@@ -79,7 +79,7 @@ struct SampleSet {
   std::vector<float> x, y, z;         ///< position relative to block_center(), model units
   std::vector<float> area;            ///< piece of surface a sample stands for, see sample_area()
   std::vector<PackedNormal> normal;   ///< unit, outward
-  std::vector<EdgeCode> edge;         ///< empty in coarsened sets
+  std::vector<EdgeCode> edge;         ///< of a coarsened set: where it lies there; several samples may share one
   std::vector<std::uint32_t> source;  ///< triangle of the input mesh; empty for fields
   double total_area = 0;
   std::size_t disagreements = 0;  ///< grid points whose inside differed between directions, settled by vote

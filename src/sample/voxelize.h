@@ -57,7 +57,6 @@ SiteVoxels voxelize_points(std::span<const Vec3> points, std::span<const Vec3> n
 /// surface separate inside from outside. Cost: O(samples).
 /// @param margin  voxels between the samples' grid and the border of the voxels', 0 to 64; d − 1 or more for a shell
 /// that reaches d voxels
-/// @throws InvalidInput  the samples have no edge codes (they were coarsened)
 SiteVoxels voxelize_samples(const SampleSet& samples, unsigned margin, Run& run = Run::silent());
 
 /// The voxels on whose edges a field changes its sign, within `bounds` (empty: the grid's).

@@ -143,8 +143,6 @@ void add_block(const SampleSet& samples, const SampleBlock& block, const VoxelGr
 }
 
 SiteVoxels voxelize_on(const SampleSet& samples, const VoxelGrid& grid, unsigned margin, const Run& run) {
-  if (samples.edge.size() != samples.size())
-    throw InvalidInput("the samples were coarsened: give those of the finer grid");
   const std::vector<std::uint64_t> keys = bin_blocks(samples, grid, margin, run);
   const std::vector<BrickItems> bricks = bricks_of(keys);
   return collect_sites(grid, bricks, run, [&](std::span<const BrickItems> some, SitePart& part) {

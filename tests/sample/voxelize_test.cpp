@@ -274,7 +274,6 @@ TEST(VoxelizeSamples, CellsOfTheSamplesGridThatTheSurfaceCrosses) {
     });
     EXPECT_LT(norm(sites.grid.center({m, m, m}) - samples.grid.point(0.5, 0.5, 0.5)), 1e-9);
   }
-  EXPECT_THROW(voxelize_samples(coarsen(samples), 4), InvalidInput);
   EXPECT_THROW(voxelize_samples(samples, 65), InvalidInput);
 }
 
