@@ -84,7 +84,8 @@ void cut_ears(std::vector<std::uint32_t>& polygon, std::span<const Vec3> positio
 }  // namespace
 
 DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& polygons,
-                              std::span<const std::uint32_t> labels, std::span<const Vec3> positions) {
+                              std::span<const std::uint32_t> labels, std::span<const Vec3> positions,
+                              bool open) {
   DualMesh mesh;
   TakenEdges taken(polygons, labels, positions.size());
   for_polygons(polygons, labels, [&](std::vector<std::uint32_t>& polygon) {
@@ -94,19 +95,24 @@ DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& pol
         if (polygon[i] == polygon[j]) repeated = true, mesh.defects.push_back({polygon[i], polygon[i]});
     if (!repeated) cut_ears(polygon, positions, taken, mesh.triangles);
   });
-  const auto bad = manifold_defects(mesh.triangles, positions.size());
+  const auto bad = manifold_defects(mesh.triangles, positions.size(), open);
   mesh.defects.insert(mesh.defects.end(), bad.begin(), bad.end());
   return mesh;
 }
 
-Defects manifold_defects(std::span<const Triangle> triangles, std::size_t vertices) {
+Defects manifold_defects(std::span<const Triangle> triangles, std::size_t vertices, bool open) {
   Defects bad;
   const HalfEdges edges(triangles, vertices);
   for (std::size_t h = 0; h < 3 * triangles.size(); ++h)
-    if (edges.opposite(h) == HalfEdges::none) {
-      const std::uint32_t v = triangles[h / 3][h % 3], w = triangles[h / 3][(h % 3 + 1) % 3];
-      bad.push_back({std::min(v, w), std::max(v, w)});
-    }
+    if (edges.opposite(h) == HalfEdges::none)
+      bad.push_back(ordered(triangles[h / 3][h % 3], triangles[h / 3][(h % 3 + 1) % 3]));
+  if (open) {  // an edge of one triangle is boundary; those that come several times are not
+    std::sort(bad.begin(), bad.end());
+    Defects repeated;
+    for (std::size_t i = 1; i < bad.size(); ++i)
+      if (bad[i] == bad[i - 1]) repeated.push_back(bad[i]);
+    return repeated;
+  }
   if (!bad.empty()) return bad;
   for (std::size_t v = 0; v < vertices; ++v)
     if (edges.fans(v) > 1) bad.push_back({static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(v)});

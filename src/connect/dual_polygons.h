@@ -20,10 +20,13 @@ struct DualMesh {
 };
 
 /// @param polygons  lists of (count, count samples); a polygon's corners are its samples' labels
+/// @param open  the surface may have a boundary
 DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& polygons,
-                              std::span<const std::uint32_t> labels, std::span<const Vec3> positions);
+                              std::span<const std::uint32_t> labels, std::span<const Vec3> positions,
+                              bool open = false);
 
-/// What keeps triangles from being a closed, oriented two-manifold; empty when they are one.
-Defects manifold_defects(std::span<const Triangle> triangles, std::size_t vertices);
+/// What keeps triangles from being an oriented two-manifold; empty when they are one.
+/// @param open  it may have a boundary, also where several fans of triangles meet in a vertex
+Defects manifold_defects(std::span<const Triangle> triangles, std::size_t vertices, bool open = false);
 
 }  // namespace evenmesh

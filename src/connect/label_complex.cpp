@@ -79,7 +79,8 @@ class Complex {
     const Index own_begin = own_block < 0 ? 1 : samples_.blocks[own_block].begin;
     const Index own_end = own_block < 0 ? 0 : samples_.blocks[own_block].end;
     const auto own = [&](Index s) { return s >= own_begin && s < own_end; };
-    for (Index s = own_begin; s < own_end; ++s) tally.twice_euler[labels_[s]] += 2;
+    for (Index s = own_begin; s < own_end; ++s)
+      if (labels_[s] != no_label) tally.twice_euler[labels_[s]] += 2;
     auto& cross = cross_links_[b];
     const auto join = [&](Index s, Index t) {
       if (own(s) && own(t)) {
@@ -95,13 +96,14 @@ class Complex {
       bool uniform = true;
       for (int i = 1; i < n; ++i) uniform &= labels_[loop[i]] == label;
       if (uniform) {
+        if (label == no_label) return;
         tally.twice_euler[label] += 2 - n;
         for (int i = 1; i < n; ++i) join(loop[i - 1], loop[i]);
         return;
       }
       for (int i = 0; i < n; ++i) {
         const Index s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
-        if (labels_[s] != labels_[t]) continue;
+        if (labels_[s] != labels_[t] || labels_[s] == no_label) continue;
         --tally.twice_euler[labels_[s]];
         join(s, t);
       }
@@ -113,8 +115,10 @@ class Complex {
   void add_polygon(std::size_t b, const Index* loop, int n) {
     Index run[12];
     Index runs = 0;
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < n; ++i) {
+      if (labels_[loop[i]] == no_label) return;
       if (labels_[loop[i]] != labels_[loop[i == 0 ? n - 1 : i - 1]]) run[runs++] = loop[i];
+    }
     if (runs < 3) return;
     auto& polygons = polygons_[b];
     polygons.push_back(runs);
@@ -154,7 +158,7 @@ class Complex {
     std::vector<std::vector<Index>> of_piece((samples_.size() + piece - 1) / piece);
     parallel_tasks(run_, of_piece.size(), [&](std::size_t p) {
       for (std::size_t i = p * piece; i < std::min(samples_.size(), (p + 1) * piece); ++i)
-        if (parent_[i] == i) of_piece[p].push_back(static_cast<Index>(i));
+        if (parent_[i] == i && labels_[i] != no_label) of_piece[p].push_back(static_cast<Index>(i));
     });
     for (const auto& list : of_piece) roots_.insert(roots_.end(), list.begin(), list.end());
   }
@@ -191,7 +195,7 @@ std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::v
   for (const SampleBlock& block : samples.blocks) {
     const Vec3 center = samples.block_center(block);
     for (Index i = block.begin; i < block.end; ++i) {
-      if (piece_count[labels[i]] <= 1) continue;
+      if (labels[i] == no_label || piece_count[labels[i]] <= 1) continue;
       const Index root = find_root(parent, i);
       Piece& piece =
           pieces[std::lower_bound(piece_of_root.begin(), piece_of_root.end(), std::pair{root, Index{0}})->second];
@@ -253,7 +257,7 @@ class Splitter {
     };
     for (std::size_t b = 0; b < samples_.blocks.size(); ++b)
       for (Index i = samples_.blocks[b].begin; i < samples_.blocks[b].end && !block_tiny[b]; ++i)
-        block_tiny[b] = piece_count[labels_[i]] > 1 && is_tiny(find_root(parent, i));
+        block_tiny[b] = labels_[i] != no_label && piece_count[labels_[i]] > 1 && is_tiny(find_root(parent, i));
     std::vector<char> brick_dirty(complex_.bricks().size(), 0);
     std::vector<std::pair<Index, Index>> links;  // (tiny root, other root)
     CubeWalker walker(samples_);
@@ -263,7 +267,7 @@ class Splitter {
       walker.walk(complex_.bricks()[b], [&](const Index* loop, int n) {
         for (int i = 0; i < n; ++i) {
           const Index r = find_root(parent, loop[i]), s = find_root(parent, loop[(i + 1) % n]);
-          if (r == s) continue;
+          if (r == s || labels_[r] == no_label || labels_[s] == no_label) continue;
           if (is_tiny(r) && !is_tiny(s)) links.push_back({r, s});
           if (is_tiny(s) && !is_tiny(r)) links.push_back({s, r});
         }
@@ -297,7 +301,7 @@ class Splitter {
     std::sort(label_of_root.begin(), label_of_root.end());
     auto& parent = complex_.parent();
     for (std::size_t i = 0; i < labels_.size(); ++i) {
-      if (piece_count[labels_[i]] <= 1) continue;
+      if (labels_[i] == no_label || piece_count[labels_[i]] <= 1) continue;
       const Index root = find_root(parent, static_cast<Index>(i));
       const auto it = std::lower_bound(label_of_root.begin(), label_of_root.end(), std::pair{root, Index{0}});
       if (it != label_of_root.end() && it->first == root) new_labels_.push_back({static_cast<Index>(i), it->second});
@@ -329,7 +333,8 @@ LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>
 
   std::vector<Vec3> positions(seeds.begin(), seeds.end());
   for (const CellPiece& piece : result.pieces) positions.push_back(piece.centroid);
-  const DualMesh dual = triangulate_polygons(complex.polygons(), labels, positions);
+  const bool open = std::find(labels.begin(), labels.end(), no_label) != labels.end();
+  const DualMesh dual = triangulate_polygons(complex.polygons(), labels, positions, open);
   result.triangles = dual.triangles;
   result.defects = dual.defects;
   for (std::size_t l = 0; l < seeds.size(); ++l)

@@ -11,6 +11,9 @@
 
 namespace evenmesh {
 
+/// Of samples that do not belong to the surface to be meshed: it ends there.
+inline constexpr std::uint32_t no_label = 0xffffffffu;
+
 /// A connected piece of a cell that is not the cell's largest.
 struct CellPiece {
   std::uint32_t label = 0;      ///< the cell it comes from
@@ -30,14 +33,15 @@ struct LabelComplex {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> defects;
 };
 
-/// Connects the cells of `labels` (one per sample, below `seeds.size()`; changed where cells are split).
+/// Connects the cells of `labels` (one per sample, below `seeds.size()` or no_label; changed where cells are split).
 ///
 /// Each crossing of a grid edge is one quad of the closed surface between inside and outside points; quads around a
 /// grid cube's loop of crossings meet in a corner. Three or more labels around a corner make a dual polygon. A label
 /// whose quads are not connected is split; a piece smaller than a tenth of a mean cell goes to a neighbour.
 ///
-/// Guarantee: without defects the triangles are a closed, oriented two-manifold with the topology of the sampled solid;
-/// same bits for any number of threads. Cost: about 60 ns per sample and core.
+/// Guarantee: without defects the triangles are a closed, oriented two-manifold with the topology of the sampled solid.
+/// Where samples have no label the surface has a boundary; several fans of triangles may then meet in one vertex there.
+/// Same bits for any number of threads. Cost: about 60 ns per sample and core.
 LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
                             Run& run);
 

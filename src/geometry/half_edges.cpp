@@ -32,22 +32,7 @@ HalfEdges::HalfEdges(std::span<const Triangle> triangles, std::size_t vertices)
 
 std::uint32_t HalfEdges::fans(std::size_t vertex) const {
   std::uint32_t count = 0;
-  std::vector<std::uint32_t> visited;
-  for (std::uint32_t at = start_[vertex]; at < start_[vertex + 1]; ++at) {
-    const std::uint32_t first = half_edges_from_[at];
-    bool known = false;
-    for (const std::uint32_t h : visited) known = known || h == first;
-    if (known) continue;
-    ++count;
-    std::uint32_t h = first;
-    do {
-      visited.push_back(h);
-      const std::uint32_t across = opposite_[previous(h)];
-      if (across == none) break;
-      h = across;
-    } while (h != first);
-    if (visited.size() == start_[vertex + 1] - start_[vertex]) break;
-  }
+  visit_fans(vertex, [&](std::uint32_t, std::uint32_t fan) { count = fan + 1; });
   return count;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Who is across an edge: half-edge connectivity of indexed triangles.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -25,9 +26,28 @@ class HalfEdges {
   std::uint32_t outgoing(std::size_t vertex) const { return outgoing_[vertex]; }
   /// Triangles at the vertex.
   std::uint32_t corners(std::size_t vertex) const { return start_[vertex + 1] - start_[vertex]; }
-  /// Groups of triangles at the vertex that are connected across edges; 1 on a two-manifold. Needs no boundary at the
-  /// vertex.
+  /// Groups of triangles at the vertex that are connected across edges; 1 on a two-manifold.
   std::uint32_t fans(std::size_t vertex) const;
+  /// Calls visit(half-edge, fan) for all half-edges that start at the vertex, fan by fan.
+  template <typename Visit>
+  void visit_fans(std::size_t vertex, const Visit& visit) const {
+    std::vector<std::uint32_t> visited;
+    std::uint32_t fan = 0;
+    for (std::uint32_t at = start_[vertex]; at < start_[vertex + 1]; ++at) {
+      if (std::find(visited.begin(), visited.end(), half_edges_from_[at]) != visited.end()) continue;
+      // Back to where the fan begins, on a boundary, or once around.
+      std::uint32_t first = half_edges_from_[at];
+      while (opposite_[first] != none && (first = next(opposite_[first])) != half_edges_from_[at]) {
+      }
+      std::uint32_t h = first;
+      do {
+        visited.push_back(h);
+        visit(h, fan);
+        h = opposite_[previous(h)];
+      } while (h != none && h != first);
+      ++fan;
+    }
+  }
 
   static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
   static std::uint32_t previous(std::uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
