@@ -21,6 +21,12 @@ void require_usable_bounds(const Box& box) {
     throw InvalidInput("the bounds are empty; give a box with x0 < x1, y0 < y1 and z0 < z1");
 }
 
+void require_finite(const std::vector<Vec3>& vectors, const std::string& what, const std::string& name) {
+  for (std::size_t i = 0; i < vectors.size(); ++i)
+    if (!is_finite(vectors[i]))
+      throw InvalidInput(what + " " + std::to_string(i) + " of '" + name + "' has a coordinate that is not finite");
+}
+
 /// −1 where a function says inside, 1 elsewhere.
 class Indicator final : public Field {
  public:
@@ -65,6 +71,17 @@ Shape shape_from_mesh(Mesh mesh, std::string name) {
   }
   const Box bounds = mesh.bounds();
   return Shape{std::move(name), bounds, std::make_shared<const Mesh>(std::move(mesh)), false};
+}
+
+Shape shape_from_points(PointCloud points, std::string name) {
+  if (points.points.empty()) throw UnusableInput("'" + name + "' has no point, so it shows no surface");
+  if (!points.normals.empty() && points.normals.size() != points.points.size())
+    throw InvalidInput("'" + name + "' has " + std::to_string(points.normals.size()) + " normals for " +
+                       std::to_string(points.points.size()) + " points; give one for each, or none");
+  require_finite(points.points, "point", name);
+  require_finite(points.normals, "normal", name);
+  const Box bounds = points.bounds();
+  return Shape{std::move(name), bounds, std::make_shared<const PointCloud>(std::move(points)), false};
 }
 
 Shape shape_from_expression(std::string_view expression, const std::map<std::string, double>& parameters,
