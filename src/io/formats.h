@@ -17,7 +17,7 @@ namespace evenmesh {
 /// A mesh, or points: vertices without triangles.
 struct PlyContents {
   Mesh mesh;
-  std::vector<Vec3> normals;  ///< of the vertices; read only where the file announces no faces
+  std::vector<Vec3> normals;  ///< of the vertices, as they are; read only where the file announces no faces
 };
 PlyContents read_ply(const Source& source);
 Mesh read_obj(const Source& source);
@@ -25,7 +25,7 @@ Mesh read_stl(const Source& source);
 Mesh read_off(const Source& source);
 Mesh read_gltf(const Source& source);
 Mesh read_threemf(const Source& source);
-/// Points as text: XYZ, PTS, PWN. The name's extension matters for six columns of PWN only.
+/// Points as text: XYZ, PTS, PWN; normals as they are. The name's extension matters for six columns of PWN only.
 PointCloud read_point_text(const Source& source);
 
 std::string write_ply(const Mesh& mesh);
@@ -34,11 +34,6 @@ std::string write_stl(const Mesh& mesh);
 std::string write_off(const Mesh& mesh);
 std::string write_gltf(const Mesh& mesh);
 std::string write_threemf(const Mesh& mesh);
-
-/// A vector that says nothing: normals that are not finite become zero.
-inline void forget_unless_finite(Vec3& normal) {
-  if (!is_finite(normal)) normal = {};
-}
 
 /// True if a name ends in ".xyz", ".pts" or ".pwn", any case.
 bool is_point_name(std::string_view name);

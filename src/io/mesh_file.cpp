@@ -47,11 +47,22 @@ Mesh read_triangles(MeshFormat format, const Source& source) {
   return mesh;
 }
 
+/// Normals that are not finite say nothing and become zero; where all are, there are none.
+PointCloud with_known_normals(PointCloud cloud) {
+  bool any = false;
+  for (Vec3& n : cloud.normals) {
+    if (!is_finite(n)) n = {};
+    any = any || n != Vec3{};
+  }
+  if (!any) cloud.normals.clear();
+  return cloud;
+}
+
 MeshOrPoints read_ply_file(const Source& source) {
   PlyContents contents = read_ply(source);
   if (!contents.mesh.triangles.empty()) return std::move(contents.mesh);
   if (contents.mesh.vertices.empty()) fail(source, "holds no triangles and no points; export the file again");
-  return PointCloud{std::move(contents.mesh.vertices), std::move(contents.normals)};
+  return with_known_normals({std::move(contents.mesh.vertices), std::move(contents.normals)});
 }
 
 /// Tables of numbers tell little, so that the name has a say, too: OFF without its first word is one as well.
@@ -61,7 +72,7 @@ bool is_point_file(const Source& source) {
 
 MeshOrPoints read_recognized(const Source& source) {
   std::optional<MeshFormat> format = format_of_content(source.bytes);
-  if (!format && is_point_file(source)) return read_point_text(source);
+  if (!format && is_point_file(source)) return with_known_normals(read_point_text(source));
   if (!format) format = format_of_name(source.name);
   if (!format) {
     fail(source,

@@ -207,7 +207,7 @@ class BodyReader {
         const char* rows = values_.take(element.count * place_of(element, element.properties.size()));
         read_fixed_columns(element, rows, xyz, mesh_.vertices);
         if (normal) read_fixed_columns(element, rows, *normal, normals_);
-        return clean_normals();
+        return;
       }
     }
     for (std::size_t v = 0; v < element.count; ++v) {
@@ -223,9 +223,7 @@ class BodyReader {
         }
       }
     }
-    clean_normals();
   }
-  void clean_normals() { std::for_each(normals_.begin(), normals_.end(), forget_unless_finite); }
 
   /// Bytes in front of a property in a row without lists.
   static std::size_t place_of(const Element& element, std::size_t property) {

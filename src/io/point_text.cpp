@@ -203,7 +203,6 @@ PointCloud cloud_of_rows(const Source& source, const Layout& layout, std::vector
     if ((always && triple == 0) || are_normals(pieces, triple)) {
       cloud.normals = join(
           source, pieces, [&](Piece & p) -> auto& { return p.triples[triple]; });
-      std::for_each(cloud.normals.begin(), cloud.normals.end(), forget_unless_finite);
     }
   }
   cloud.points = join(

@@ -12,8 +12,8 @@ namespace evenmesh {
 
 /// A balanced k-d tree of different points: no grid, so that a point miles away does no harm.
 ///
-/// Guarantee: same bits for any number of threads. Cost: O(n log n) to build, 0.3 s per million points; 48 bytes each
-/// at most.
+/// Guarantee: same bits for any number of threads. Cost: O(n log n) to build, half a second per million points; about
+/// 30 bytes each.
 /// Based on Bentley, Multidimensional binary search trees used for associative searching, CACM 1975; bounds of the
 /// search by Arya, Mount, Algorithms for fast vector quantization, DCC 1993.
 class PointTree {
@@ -26,7 +26,7 @@ class PointTree {
   /// The i-th of them; near ones have near numbers.
   Vec3 point(std::size_t i) const { return points_[i] * (1 / scale_); }
   /// Distances from p to the nearest points other than p itself, in ascending order.
-  /// @param distances  as many as are wanted, below size(). Cost: one or two microseconds for a dozen.
+  /// @param distances  as many as are wanted, below size(). Cost: some microseconds for a dozen.
   void nearest(const Vec3& p, std::span<double> distances) const;
 
  private:

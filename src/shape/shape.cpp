@@ -21,10 +21,12 @@ void require_usable_bounds(const Box& box) {
     throw InvalidInput("the bounds are empty; give a box with x0 < x1, y0 < y1 and z0 < z1");
 }
 
-void require_finite(const std::vector<Vec3>& vectors, const std::string& what, const std::string& name) {
-  for (std::size_t i = 0; i < vectors.size(); ++i)
-    if (!is_finite(vectors[i]))
-      throw InvalidInput(what + " " + std::to_string(i) + " of '" + name + "' has a coordinate that is not finite");
+/// @param what  of `name`, e.g. "point"
+void require_finite(const std::vector<Vec3>& vectors, const char* what, const std::string& name) {
+  const auto wrong = std::find_if_not(vectors.begin(), vectors.end(), is_finite);
+  if (wrong == vectors.end()) return;
+  throw InvalidInput(what + (" " + std::to_string(wrong - vectors.begin())) + " of '" + name +
+                     "' has a coordinate that is not finite");
 }
 
 /// −1 where a function says inside, 1 elsewhere.
