@@ -1,12 +1,14 @@
-/// evenmesh info: what a mesh is like.
+/// evenmesh info: what a mesh, or a point cloud, is like.
 
 #include <fmt/format.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <variant>
 
 #include "command.h"
 #include "evenmesh/measure.h"
+#include "evenmesh/points.h"
 #include "input.h"
 #include "interrupt.h"
 #include "output.h"
@@ -21,19 +23,34 @@ struct InfoArguments {
   bool json = false;
 };
 
+using Json = nlohmann::ordered_json;
+
+std::string describe(const Mesh& mesh, bool json, Run& run) {
+  const MeshQuality quality = measure_quality(mesh, run);
+  const std::size_t pairs = self_intersections(mesh, run).size();
+  if (!json) return table(quality, pairs);
+  auto figures = Json::parse(quality_json(quality));
+  figures["self_intersections"] = pairs;
+  return figures.dump(2) + "\n";
+}
+
+std::string describe(const PointCloud& cloud, bool json, Run& run) {
+  const double spacing = point_spacing(cloud, run);
+  if (!json) return table(cloud, spacing);
+  const Box box = cloud.bounds();
+  const Json figures{{"points", cloud.points.size()},
+                     {"normals", !cloud.normals.empty()},
+                     {"spacing", spacing},
+                     {"bounds", {box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z}}};
+  return figures.dump(2) + "\n";
+}
+
 int run_info(const InfoArguments& a) {
   Run run(static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024)));
   const CancelOnInterrupt interrupt(run);
-  const Mesh mesh = read_mesh_file("info", a.mesh, run);
-  const MeshQuality quality = measure_quality(mesh, run);
-  const std::size_t pairs = self_intersections(mesh, run).size();
-  if (!a.json) {
-    write_output("-", fmt::format("{}\n{}", a.mesh == "-" ? "standard input" : a.mesh, table(quality, pairs)));
-    return Status::done;
-  }
-  auto json = nlohmann::ordered_json::parse(quality_json(quality));
-  json["self_intersections"] = pairs;
-  write_output("-", json.dump(2) + "\n");
+  const std::variant<Mesh, PointCloud> contents = read_file("info", a.mesh, run);
+  const std::string text = std::visit([&](const auto& what) { return describe(what, a.json, run); }, contents);
+  write_output("-", a.json ? text : fmt::format("{}\n{}", a.mesh == "-" ? "standard input" : a.mesh, text));
   return Status::done;
 }
 
@@ -41,8 +58,9 @@ int run_info(const InfoArguments& a) {
 
 void add_info_command(CLI::App& app, Action& action) {
   const auto a = std::make_shared<InfoArguments>();
-  CLI::App* command = app.add_subcommand("info", "size, quality and topology of a mesh, as a table");
-  command->add_option("MESH", a->mesh, "mesh file, or - for standard input")->type_name("")->required();
+  CLI::App* command =
+      app.add_subcommand("info", "size, quality and topology of a mesh, or size and spacing of points, as a table");
+  command->add_option("MESH", a->mesh, "mesh or point file, or - for standard input")->type_name("")->required();
   command->add_flag("--json", a->json, "print one JSON object instead");
   command->add_option("-j,--threads", a->threads, "number of threads, 0 to 1024; default 0 = one per processor")
       ->type_name("N");

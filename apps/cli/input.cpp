@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <optional>
+#include <utility>
 
 #include "evenmesh/io.h"
 #include "values.h"
@@ -27,9 +27,6 @@ constexpr std::array planned_kinds{
     PlannedKind{".nii.gz", "reading a NIfTI volume"},
     PlannedKind{".nrrd", "reading an NRRD volume"},
     PlannedKind{".tdx", "reading dexels"},
-    PlannedKind{".xyz", "reading a point cloud"},
-    PlannedKind{".pts", "reading a point cloud"},
-    PlannedKind{".pwn", "reading a point cloud"},
 };
 
 bool ends_with_ignoring_case(std::string_view text, std::string_view ending) {
@@ -44,22 +41,32 @@ void refuse_planned_kinds(const std::string& name) {
                                  [&](const PlannedKind& k) { return ends_with_ignoring_case(name, k.extension); });
   if (kind == planned_kinds.end()) return;
   std::ifstream file(name, std::ios::binary);
-  if (!file) return;  // read_mesh says what is wrong with it
+  if (!file) return;  // whoever reads it says what is wrong with it
   std::string head(4096, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(file.gcount()));
   if (!format_of_content(head)) not_available(fmt::format("{} ({})", kind->what, name));
 }
 
-}  // namespace
-
-Mesh read_mesh_file(const std::string& command, const std::string& name, Run& run) {
+/// Refuses what names no file, or a file that cannot be read yet.
+void check_file(const std::string& command, const std::string& name) {
   if (name.starts_with(gallery_prefix)) {
     throw InvalidInput(fmt::format("{} takes a mesh file; make one first: evenmesh mesh {} -o {}.ply", command, name,
                                    name.substr(gallery_prefix.size())));
   }
   refuse_planned_kinds(name);
+}
+
+}  // namespace
+
+Mesh read_mesh_file(const std::string& command, const std::string& name, Run& run) {
+  check_file(command, name);
   return read_mesh(name, run);
+}
+
+std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::string& name, Run& run) {
+  check_file(command, name);
+  return read_mesh_or_points(name, run);
 }
 
 void check_input(const InputArguments& input) {
@@ -82,7 +89,10 @@ Shape read_shape(const InputArguments& input, const Box& bounds, Run& run) {
   if (!input.expressions.empty()) return shape_from_expression(input.expressions[0], input.parameters, bounds);
   const std::string& name = input.positional[0];
   if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
-  return shape_from_mesh(read_mesh_file("mesh", name, run), name == "-" ? "standard input" : name);
+  const std::string title = name == "-" ? "standard input" : name;
+  std::variant<Mesh, PointCloud> contents = read_file("mesh", name, run);
+  if (auto* points = std::get_if<PointCloud>(&contents)) return shape_from_points(std::move(*points), title);
+  return shape_from_mesh(std::get<Mesh>(std::move(contents)), title);
 }
 
 }  // namespace evenmesh::cli

@@ -3,9 +3,11 @@
 
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "evenmesh/mesh.h"
+#include "evenmesh/points.h"
 #include "evenmesh/run.h"
 #include "evenmesh/shape.h"
 
@@ -29,5 +31,8 @@ Shape read_shape(const InputArguments& input, const Box& bounds, Run& run);
 
 /// A mesh file, or standard input for "-". Throws like read_shape.
 Mesh read_mesh_file(const std::string& command, const std::string& name, Run& run);
+
+/// A file of a mesh or of points, or standard input for "-". Throws like read_shape.
+std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::string& name, Run& run);
 
 }  // namespace evenmesh::cli

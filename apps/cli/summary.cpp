@@ -17,6 +17,11 @@ std::string quality_line(const MeshQuality& q) {
   return fmt::format("least {:.3f}, mean {:.4f}  (1 = equilateral)", q.q_min, q.q_avg);
 }
 
+std::string size_line(const Box& box) {
+  const Vec3 size = box.empty() ? Vec3{} : box.size();
+  return fmt::format("{:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}", size.x, size.y, size.z, box.diagonal());
+}
+
 std::string angle_line(const MeshQuality& q) {
   return fmt::format("smallest {:.1f}°, mean smallest {:.2f}°, largest {:.1f}°; {:.3f} % of triangles below 30°",
                      q.theta_min, q.theta_avg, q.theta_max, 100 * q.below_30_ratio);
@@ -60,7 +65,6 @@ std::string summary(const Report& report, const std::string& output, double seco
 }
 
 std::string table(const MeshQuality& q, std::size_t self_intersections) {
-  const Vec3 size = q.bounds.empty() ? Vec3{} : q.bounds.size();
   std::string text;
   text += row("vertices", grouped(q.vertices) +
                               (q.unused_vertices ? fmt::format(" (and {} unused)", grouped(q.unused_vertices)) : ""));
@@ -77,8 +81,19 @@ std::string table(const MeshQuality& q, std::size_t self_intersections) {
   text += row("edge length", fmt::format("{:.6g}, varies by {:.1f} %", q.edge_length_avg, 100 * q.edge_length_cv));
   text += row("area", fmt::format("{:.8g}", q.area));
   text += row("volume", fmt::format("{:.8g}", q.volume));
-  text += row("size",
-              fmt::format("{:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}", size.x, size.y, size.z, q.bounds.diagonal()));
+  text += row("size", size_line(q.bounds));
+  return text;
+}
+
+std::string table(const PointCloud& cloud, double spacing) {
+  const Box box = cloud.bounds();
+  std::string text;
+  text += row("points", grouped(cloud.points.size()));
+  text += row("normals", cloud.normals.empty() ? "no" : "yes");
+  text += row("spacing", fmt::format("{:.6g} (median distance to the sixth nearest point)", spacing));
+  text += row("size", size_line(box));
+  text += row("from", fmt::format("{:.6g}, {:.6g}, {:.6g}", box.lo.x, box.lo.y, box.lo.z));
+  text += row("to", fmt::format("{:.6g}, {:.6g}, {:.6g}", box.hi.x, box.hi.y, box.hi.z));
   return text;
 }
 

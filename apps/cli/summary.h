@@ -6,6 +6,7 @@
 
 #include "evenmesh/measure.h"
 #include "evenmesh/mesh_shape.h"
+#include "evenmesh/points.h"
 
 namespace evenmesh::cli {
 
@@ -18,7 +19,8 @@ std::string topology(const MeshQuality& quality);
 /// A few lines after a run.
 std::string summary(const Report& report, const std::string& output, double seconds);
 
-/// The table of `evenmesh info`.
+/// The table of `evenmesh info`, for meshes and for points.
 std::string table(const MeshQuality& quality, std::size_t self_intersections);
+std::string table(const PointCloud& cloud, double spacing);
 
 }  // namespace evenmesh::cli

@@ -1,13 +1,15 @@
 #pragma once
-/// Mesh files: PLY, OBJ, STL, OFF, GLB, 3MF, in and out.
+/// Mesh files, in and out: PLY, OBJ, STL, OFF, GLB, 3MF. Point clouds, in: XYZ, PTS, PWN, PLY.
 
 #include <filesystem>
 #include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include "evenmesh/mesh.h"
+#include "evenmesh/points.h"
 #include "evenmesh/run.h"
 
 namespace evenmesh {
@@ -31,6 +33,27 @@ Mesh read_mesh(const std::filesystem::path& path, Run& run = Run::silent());
 
 /// The same from memory; `name` is used for its extension and in messages.
 Mesh parse_mesh(std::string_view bytes, std::string_view name);
+
+/// Reads a point cloud: PLY without faces (normals nx, ny, nz), or text with a point a line, its numbers apart by
+/// blanks, commas or semicolons, '#' and '//' before comments. Recognized by content first, extension second.
+///
+/// Text may begin with the number of points (PTS, PWN); as many lines with normals may follow the points (PWN). Three
+/// further columns, behind the coordinates or behind three colours, are normals where they have unit length (within
+/// 10 %, 99 of 100 that are not zero), and always in six columns of a ".pwn" file. All else is left out.
+/// A normal with an infinite component or NaN becomes zero: unknown. Where all are zero, there are none.
+///
+/// @param path  a file, or "-" for standard input
+/// @throws UnusableInput  one sentence that names the file and what is wrong with it: missing, a directory, empty, a
+///         mesh, truncated, a wrong number of columns or points, a coordinate that is not finite, no text at all
+/// Guarantee: any sequence of bytes either gives finite coordinates, and no or as many normals, or throws.
+/// Cost: O(bytes) time and memory, in parallel; never allocates more than a small multiple of the file's size.
+PointCloud read_points(const std::filesystem::path& path, Run& run = Run::silent());
+
+/// The same from memory; `name` is used for its extension and in messages.
+PointCloud parse_points(std::string_view bytes, std::string_view name);
+
+/// Reads whichever of the two a file holds: a mesh, or points. Otherwise like read_mesh and read_points.
+std::variant<Mesh, PointCloud> read_mesh_or_points(const std::filesystem::path& path, Run& run = Run::silent());
 
 /// Writes a mesh; format by extension. PLY, STL, GLB are binary little-endian, float32 coordinates.
 /// The file appears under its name only when it is complete (temporary name, then rename).

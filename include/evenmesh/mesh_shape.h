@@ -77,6 +77,7 @@ struct MeshResult {
 /// with promise_broken. Same bytes for any number of threads. Cost: two cores take about 0.1 ms and 7 kB per vertex.
 /// @throws InvalidInput   options out of range
 /// @throws UnusableInput  no surface within the bounds
+/// @throws NotAvailable   the shape is a point cloud
 /// @throws Cancelled      through `run`
 /// Based on Martínez, Claux, Lefebvre, Raster2Mesh, Inria RR-8684, 2015.
 MeshResult mesh_shape(const Shape& shape, const MeshOptions& options = {}, Run& run = Run::silent());

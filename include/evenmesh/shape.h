@@ -1,5 +1,6 @@
 #pragma once
-/// What can be meshed: triangle meshes as solids, implicit expressions, indicator functions, built-in shapes.
+/// What can be meshed: triangle meshes as solids, implicit expressions, indicator functions, point clouds, built-in
+/// shapes.
 
 #include <functional>
 #include <map>
@@ -11,17 +12,19 @@
 #include <vector>
 
 #include "evenmesh/mesh.h"
+#include "evenmesh/points.h"
 
 namespace evenmesh {
 
 class Field;
 
-/// Something with an inside, and so with a surface. Cheap to copy.
+/// Something with a surface. Cheap to copy.
 struct Shape {
   std::string name;  ///< for messages
   Box bounds;        ///< where the surface is sought, model units; empty: to be found (implicit shapes only)
-  /// A triangle mesh is a solid by its winding number (non-zero = inside); a field is a solid where f < 0.
-  std::variant<std::shared_ptr<const Mesh>, std::shared_ptr<const Field>> what;
+  /// A triangle mesh is a solid by its winding number (non-zero = inside); a field is a solid where f < 0; a point
+  /// cloud is a surface without an inside.
+  std::variant<std::shared_ptr<const Mesh>, std::shared_ptr<const Field>, std::shared_ptr<const PointCloud>> what;
   /// The solid leaves its bounds and is closed by them on purpose, or may be (then a cut is worth a warning).
   bool capped_by_bounds = false;
 
@@ -33,11 +36,21 @@ struct Shape {
     const auto* p = std::get_if<std::shared_ptr<const Field>>(&what);
     return p ? p->get() : nullptr;
   }
+  const PointCloud* points() const {
+    const auto* p = std::get_if<std::shared_ptr<const PointCloud>>(&what);
+    return p ? p->get() : nullptr;
+  }
 };
 
 /// A solid bounded by triangles, in any orientation; bounds are those of the used vertices.
 /// @throws UnusableInput if the mesh has no triangle; InvalidInput if an index or coordinate is invalid
 Shape shape_from_mesh(Mesh mesh, std::string name = "mesh");
+
+/// The surface that points were taken from.
+/// @throws UnusableInput if there is no point; InvalidInput if a coordinate is not finite or the normals are not one
+/// per
+///         point
+Shape shape_from_points(PointCloud points, std::string name = "points");
 
 /// The solid f < 0 of an expression in x, y, z (and r = √(x²+y²+z²)).
 ///

@@ -1,23 +1,32 @@
 #pragma once
-/// One reader and one writer per format; read_mesh() and write_mesh() choose among them.
+/// One reader and one writer per format; read_mesh(), read_points() and write_mesh() choose among them.
 ///
 /// Readers throw UnusableInput with the name of the source and, in text files, the line. They give valid indices and
 /// finite coordinates; a file without triangles is left to parse_mesh(). Writers expect what serialize_mesh() has
 /// checked.
 
 #include <string>
+#include <vector>
 
 #include "evenmesh/mesh.h"
+#include "evenmesh/points.h"
 #include "io/source.h"
 
 namespace evenmesh {
 
-Mesh read_ply(const Source& source);
+/// A mesh, or points: vertices without triangles.
+struct PlyContents {
+  Mesh mesh;
+  std::vector<Vec3> normals;  ///< of the vertices, as they are; read only where the file announces no faces
+};
+PlyContents read_ply(const Source& source);
 Mesh read_obj(const Source& source);
 Mesh read_stl(const Source& source);
 Mesh read_off(const Source& source);
 Mesh read_gltf(const Source& source);
 Mesh read_threemf(const Source& source);
+/// Points as text: XYZ, PTS, PWN; normals as they are. The name's extension matters for six columns of PWN only.
+PointCloud read_point_text(const Source& source);
 
 std::string write_ply(const Mesh& mesh);
 std::string write_obj(const Mesh& mesh);
@@ -25,6 +34,12 @@ std::string write_stl(const Mesh& mesh);
 std::string write_off(const Mesh& mesh);
 std::string write_gltf(const Mesh& mesh);
 std::string write_threemf(const Mesh& mesh);
+
+/// True if a name ends in ".xyz", ".pts" or ".pwn", any case.
+bool is_point_name(std::string_view name);
+/// True if text begins like a point file: three numbers or more on a line, maybe behind a line with their count.
+/// OFF files whose first word was left out do so, too.
+bool is_point_text(std::string_view bytes);
 
 /// True if an STL file is text: it begins with "solid" and speaks of facets soon after.
 bool is_ascii_stl(std::string_view bytes);

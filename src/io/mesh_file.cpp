@@ -1,9 +1,10 @@
-/// Reading and writing meshes: recognition, checks, and the choice among the formats.
+/// Reading and writing meshes, reading points: recognition, checks, and the choice among the formats.
 
 #include <fmt/format.h>
 
 #include <new>
 #include <stdexcept>
+#include <variant>
 
 #include "core/parallel.h"
 #include "evenmesh/error.h"
@@ -15,10 +16,12 @@
 namespace evenmesh {
 namespace {
 
+using MeshOrPoints = std::variant<Mesh, PointCloud>;
+
 Mesh read_as(MeshFormat format, const Source& source) {
   switch (format) {
     case MeshFormat::ply:
-      return read_ply(source);
+      return read_ply(source).mesh;
     case MeshFormat::obj:
       return read_obj(source);
     case MeshFormat::stl:
@@ -33,27 +36,84 @@ Mesh read_as(MeshFormat format, const Source& source) {
   throw InvalidInput("the mesh format is none of the six; take one of MeshFormat");
 }
 
-Mesh parse(Source source) {
-  if (source.bytes.starts_with("\xef\xbb\xbf")) source.bytes.remove_prefix(3);  // byte order mark of UTF-8
-  if (source.bytes.empty()) fail(source, "is empty; export the mesh again");
-  std::optional<MeshFormat> format = format_of_content(source.bytes);
-  if (!format) format = format_of_name(source.name);
-  if (!format) {
-    fail(source, "is no mesh file that can be recognized; PLY, OBJ, STL, OFF, GLB, glTF and 3MF can be read");
-  }
-  Mesh mesh;
-  try {
-    mesh = read_as(*format, source);
-  } catch (const std::bad_alloc&) {
-    fail(source, "does not fit into the memory; reduce the mesh or use a larger machine");
-  }
+Mesh read_triangles(MeshFormat format, const Source& source) {
+  Mesh mesh = read_as(format, source);
   if (mesh.triangles.empty() && !mesh.vertices.empty()) {
-    fail(source, fmt::format("holds no triangles, only {} points; point clouds are not available in this version, "
-                             "convert it to a mesh",
+    fail(source, fmt::format("holds no triangles, only {} points; export the file again, with its faces, or its points "
+                             "as PLY or XYZ",
                              mesh.vertices.size()));
   }
   if (mesh.triangles.empty()) fail(source, "holds no triangles; export the file again, with its faces");
   return mesh;
+}
+
+/// Normals that are not finite say nothing and become zero; where all are, there are none.
+PointCloud with_known_normals(PointCloud cloud) {
+  bool any = false;
+  for (Vec3& n : cloud.normals) {
+    if (!is_finite(n)) n = {};
+    any = any || n != Vec3{};
+  }
+  if (!any) cloud.normals.clear();
+  return cloud;
+}
+
+MeshOrPoints read_ply_file(const Source& source) {
+  PlyContents contents = read_ply(source);
+  if (!contents.mesh.triangles.empty()) return std::move(contents.mesh);
+  if (contents.mesh.vertices.empty()) fail(source, "holds no triangles and no points; export the file again");
+  return with_known_normals({std::move(contents.mesh.vertices), std::move(contents.normals)});
+}
+
+/// Tables of numbers tell little, so that the name has a say, too: OFF without its first word is one as well.
+bool is_point_file(const Source& source) {
+  return is_point_name(source.name) || (format_of_name(source.name) != MeshFormat::off && is_point_text(source.bytes));
+}
+
+MeshOrPoints read_recognized(const Source& source) {
+  std::optional<MeshFormat> format = format_of_content(source.bytes);
+  if (!format && is_point_file(source)) return with_known_normals(read_point_text(source));
+  if (!format) format = format_of_name(source.name);
+  if (!format) {
+    fail(source,
+         "is no file of a mesh or points that can be recognized; PLY, OBJ, STL, OFF, GLB, glTF, 3MF, XYZ, PTS "
+         "and PWN can be read");
+  }
+  return format == MeshFormat::ply ? read_ply_file(source) : read_triangles(*format, source);
+}
+
+MeshOrPoints parse(Source source) {
+  if (source.bytes.starts_with("\xef\xbb\xbf")) source.bytes.remove_prefix(3);  // byte order mark of UTF-8
+  if (source.bytes.empty()) fail(source, "is empty; export it again");
+  try {
+    return read_recognized(source);
+  } catch (const std::bad_alloc&) {
+    fail(source, "does not fit into the memory; reduce it or use a larger machine");
+  }
+}
+
+MeshOrPoints load(const std::filesystem::path& path, Run& run) {
+  run.throw_if_cancelled();
+  const std::string name = name_of_input(path);
+  try {
+    const FileBytes bytes = load_file(path);
+    run.throw_if_cancelled();
+    return with_threads(run, [&] { return parse({bytes.view(), name, &run}); });
+  } catch (const std::bad_alloc&) {
+    throw UnusableInput(name + ": does not fit into the memory; reduce it or use a larger machine");
+  }
+}
+
+Mesh mesh_of(MeshOrPoints contents, std::string_view name) {
+  if (Mesh* mesh = std::get_if<Mesh>(&contents)) return std::move(*mesh);
+  throw UnusableInput(fmt::format("{}: holds no triangles, only {} points; export the file again, with its faces", name,
+                                  std::get<PointCloud>(contents).points.size()));
+}
+
+PointCloud points_of(MeshOrPoints contents, std::string_view name) {
+  if (PointCloud* cloud = std::get_if<PointCloud>(&contents)) return std::move(*cloud);
+  throw UnusableInput(
+      fmt::format("{}: holds a mesh, not points; save its vertices as XYZ, or as PLY without faces", name));
 }
 
 /// All formats hold 32-bit floats: coordinates that overflow one would come back as infinity.
@@ -79,19 +139,23 @@ void require_writable(const Mesh& mesh) {
 }  // namespace
 
 Mesh parse_mesh(std::string_view bytes, std::string_view name) {
-  return parse({bytes, name, &Run::silent()});
+  return mesh_of(parse({bytes, name, &Run::silent()}), name);
 }
 
 Mesh read_mesh(const std::filesystem::path& path, Run& run) {
-  run.throw_if_cancelled();
-  const std::string name = name_of_input(path);
-  try {
-    const FileBytes bytes = load_file(path);
-    run.throw_if_cancelled();
-    return with_threads(run, [&] { return parse({bytes.view(), name, &run}); });
-  } catch (const std::bad_alloc&) {
-    throw UnusableInput(name + ": does not fit into the memory; reduce it or use a larger machine");
-  }
+  return mesh_of(load(path, run), name_of_input(path));
+}
+
+PointCloud parse_points(std::string_view bytes, std::string_view name) {
+  return points_of(parse({bytes, name, &Run::silent()}), name);
+}
+
+PointCloud read_points(const std::filesystem::path& path, Run& run) {
+  return points_of(load(path, run), name_of_input(path));
+}
+
+std::variant<Mesh, PointCloud> read_mesh_or_points(const std::filesystem::path& path, Run& run) {
+  return load(path, run);
 }
 
 std::string serialize_mesh(const Mesh& mesh, MeshFormat format) {

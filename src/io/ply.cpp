@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <string_view>
 
 #include "core/parallel.h"
 #include "io/binary.h"
@@ -120,11 +122,13 @@ class BodyReader {
   BodyReader(const Source& source, const Header& header, Values values)
       : source_(source), header_(header), values_(std::move(values)) {}
 
-  Mesh read() {
+  PlyContents read() {
     for (const Element& element : header_.elements) {
       if (element.name == "vertex") {
         if (vertices_known_) values_.refuse("has two 'vertex' elements");
         vertex_count_ = element.count, vertices_known_ = true;
+      } else if (is_surface(element)) {
+        faces_announced_ = faces_announced_ || element.count > 0;
       }
     }
     if (!vertices_known_) fail(source_, "has no 'vertex' element; export the file again, as a mesh");
@@ -132,17 +136,21 @@ class BodyReader {
       check_size(element);
       if (element.name == "vertex") {
         read_vertices(element);
-      } else if (element.name == "face" || element.name == "tristrips") {
+      } else if (is_surface(element)) {
         read_faces(element);
       } else {
         for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) skip_row(element, 0);
       }
     }
     require_finite(source_, mesh_.vertices);
-    return std::move(mesh_);
+    return {std::move(mesh_), std::move(normals_)};
   }
 
  private:
+  using Columns = std::array<std::size_t, 3>;  ///< places of three properties in their element
+
+  static bool is_surface(const Element& element) { return element.name == "face" || element.name == "tristrips"; }
+
   /// Counts are checked against the bytes that are left before anything is allocated.
   void check_size(const Element& element) const {
     std::uint64_t row = 0;
@@ -163,32 +171,53 @@ class BodyReader {
     for (std::size_t i = first; i < element.properties.size(); ++i) skip_property(element.properties[i]);
   }
 
-  std::array<std::size_t, 3> coordinate_properties(const Element& element) const {
-    std::array<std::size_t, 3> found{};
-    for (int a = 0; a < 3; ++a) {
-      const std::string name(1, static_cast<char>('x' + a));
-      const auto p = std::find_if(element.properties.begin(), element.properties.end(),
-                                  [&](const Property& candidate) { return candidate.name == name; });
-      if (p == element.properties.end() || p->count_type) {
+  /// The place of a property that is one number, or none.
+  static std::optional<std::size_t> find_number(const Element& element, std::string_view name) {
+    const auto p = std::find_if(element.properties.begin(), element.properties.end(),
+                                [&](const Property& candidate) { return candidate.name == name; });
+    if (p == element.properties.end() || p->count_type) return {};
+    return static_cast<std::size_t>(p - element.properties.begin());
+  }
+  Columns coordinate_columns(const Element& element) const {
+    Columns columns{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::string name(1, "xyz"[a]);
+      const auto found = find_number(element, name);
+      if (!found) {
         fail(source_, fmt::format("its vertices have no property '{}'; export the file again, with positions", name));
       }
-      found[static_cast<std::size_t>(a)] = static_cast<std::size_t>(p - element.properties.begin());
+      columns[a] = *found;
     }
-    return found;
+    return columns;
+  }
+  static std::optional<Columns> normal_columns(const Element& element) {
+    const auto x = find_number(element, "nx"), y = find_number(element, "ny"), z = find_number(element, "nz");
+    if (!x || !y || !z) return {};
+    return Columns{*x, *y, *z};
   }
 
   void read_vertices(const Element& element) {
     if (element.count > max_vertices) values_.refuse("has more than 4,294,967,295 vertices; split it");
-    const auto xyz = coordinate_properties(element);
+    const Columns xyz = coordinate_columns(element);
+    const std::optional<Columns> normal = faces_announced_ ? std::nullopt : normal_columns(element);
     mesh_.vertices.resize(element.count);
+    if (normal) normals_.resize(element.count);
     if constexpr (std::is_same_v<Values, BinaryValues>) {
-      if (!element.has_lists()) return read_fixed_vertices(element, xyz);
+      if (!element.has_lists()) {
+        const char* rows = values_.take(element.count * place_of(element, element.properties.size()));
+        read_fixed_columns(element, rows, xyz, mesh_.vertices);
+        if (normal) read_fixed_columns(element, rows, *normal, normals_);
+        return;
+      }
     }
-    for (Vec3& v : mesh_.vertices) {
+    for (std::size_t v = 0; v < element.count; ++v) {
       for (std::size_t i = 0; i < element.properties.size(); ++i) {
         const auto axis = std::find(xyz.begin(), xyz.end(), i) - xyz.begin();
+        const auto normal_axis = normal ? std::find(normal->begin(), normal->end(), i) - normal->begin() : 3;
         if (axis < 3) {
-          v[static_cast<int>(axis)] = values_.number(element.properties[i].type);
+          mesh_.vertices[v][static_cast<int>(axis)] = values_.number(element.properties[i].type);
+        } else if (normal_axis < 3) {
+          normals_[v][static_cast<int>(normal_axis)] = values_.number(element.properties[i].type);
         } else {
           skip_property(element.properties[i]);
         }
@@ -196,30 +225,33 @@ class BodyReader {
     }
   }
 
+  /// Bytes in front of a property in a row without lists.
+  static std::size_t place_of(const Element& element, std::size_t property) {
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < property; ++i) place += size_of(element.properties[i].type);
+    return place;
+  }
+
   /// Rows of one size, in parallel.
-  void read_fixed_vertices(const Element& element, const std::array<std::size_t, 3>& xyz) {
+  void read_fixed_columns(const Element& element, const char* rows, const Columns& columns,
+                          std::vector<Vec3>& vectors) const {
     std::array<std::size_t, 3> offset{};
     std::array<Type, 3> type{};
-    std::size_t stride = 0;
-    for (std::size_t i = 0; i < element.properties.size(); ++i) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        if (xyz[a] == i) offset[a] = stride, type[a] = element.properties[i].type;
-      }
-      stride += size_of(element.properties[i].type);
+    for (std::size_t a = 0; a < 3; ++a) {
+      offset[a] = place_of(element, columns[a]), type[a] = element.properties[columns[a]].type;
     }
-    const char* rows = values_.take(element.count * stride);
+    const std::size_t stride = place_of(element, element.properties.size());
     const bool swap = values_.swap();
     const bool plain = !swap && std::all_of(type.begin(), type.end(), [](Type t) { return t == Type::float32; });
-    parallel_for(*source_.run, element.count, 1 << 16, [&](std::size_t begin, std::size_t end) {
+    parallel_for(*source_.run, vectors.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const char* row = rows + i * stride;
         if (plain) {
-          mesh_.vertices[i] = {load<float>(row + offset[0]), load<float>(row + offset[1]),
-                               load<float>(row + offset[2])};
+          vectors[i] = {load<float>(row + offset[0]), load<float>(row + offset[1]), load<float>(row + offset[2])};
         } else {
-          mesh_.vertices[i] = {BinaryValues::decode(type[0], row + offset[0], swap),
-                               BinaryValues::decode(type[1], row + offset[1], swap),
-                               BinaryValues::decode(type[2], row + offset[2], swap)};
+          vectors[i] = {BinaryValues::decode(type[0], row + offset[0], swap),
+                        BinaryValues::decode(type[1], row + offset[1], swap),
+                        BinaryValues::decode(type[2], row + offset[2], swap)};
         }
       }
     });
@@ -291,13 +323,14 @@ class BodyReader {
   const Header& header_;
   Values values_;
   Mesh mesh_;
+  std::vector<Vec3> normals_;
   std::uint64_t vertex_count_ = 0;
-  bool vertices_known_ = false;
+  bool vertices_known_ = false, faces_announced_ = false;
 };
 
 }  // namespace
 
-Mesh read_ply(const Source& source) {
+PlyContents read_ply(const Source& source) {
   const Header header = parse_header(source);
   if (header.encoding == Encoding::ascii) {
     return BodyReader(source, header, AsciiValues(source, header.body)).read();

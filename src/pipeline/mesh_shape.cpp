@@ -240,6 +240,7 @@ class Job {
 
 MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, Run& run) {
   check(options);
+  if (shape.points()) throw NotAvailable("meshing point clouds is not available in this version");
   return with_threads(run, [&] { return Job(shape, options, run).result(); });
 }
 

@@ -89,7 +89,7 @@ class FieldProjector : public Projector {
 
 std::unique_ptr<Projector> make_projector(const Shape& shape, const Box& bounds, Run& run) {
   if (const Mesh* mesh = shape.mesh()) return std::make_unique<MeshProjector>(*mesh, bounds, run);
-  if (!shape.field()->has_gradient()) return nullptr;
+  if (!shape.field() || !shape.field()->has_gradient()) return nullptr;
   return std::make_unique<FieldProjector>(std::get<std::shared_ptr<const Field>>(shape.what), bounds);
 }
 

@@ -17,7 +17,8 @@ class Projector {
 };
 
 /// Closest point of a mesh, or f = 0 of a field by Newton steps in double precision, and the faces of `bounds` where
-/// they cut the solid; null for indicator functions, which know no distance. Cost: a microsecond or two per point.
+/// they cut the solid; null for indicator functions, which know no distance, and point clouds. Cost: a microsecond or
+/// two per point.
 std::unique_ptr<Projector> make_projector(const Shape& shape, const Box& bounds, Run& run);
 
 }  // namespace evenmesh

@@ -21,6 +21,14 @@ void require_usable_bounds(const Box& box) {
     throw InvalidInput("the bounds are empty; give a box with x0 < x1, y0 < y1 and z0 < z1");
 }
 
+/// @param what  of `name`, e.g. "point"
+void require_finite(const std::vector<Vec3>& vectors, const char* what, const std::string& name) {
+  const auto wrong = std::find_if_not(vectors.begin(), vectors.end(), is_finite);
+  if (wrong == vectors.end()) return;
+  throw InvalidInput(what + (" " + std::to_string(wrong - vectors.begin())) + " of '" + name +
+                     "' has a coordinate that is not finite");
+}
+
 /// −1 where a function says inside, 1 elsewhere.
 class Indicator final : public Field {
  public:
@@ -65,6 +73,17 @@ Shape shape_from_mesh(Mesh mesh, std::string name) {
   }
   const Box bounds = mesh.bounds();
   return Shape{std::move(name), bounds, std::make_shared<const Mesh>(std::move(mesh)), false};
+}
+
+Shape shape_from_points(PointCloud points, std::string name) {
+  if (points.points.empty()) throw UnusableInput("'" + name + "' has no point, so it shows no surface");
+  if (!points.normals.empty() && points.normals.size() != points.points.size())
+    throw InvalidInput("'" + name + "' has " + std::to_string(points.normals.size()) + " normals for " +
+                       std::to_string(points.points.size()) + " points; give one for each, or none");
+  require_finite(points.points, "point", name);
+  require_finite(points.normals, "normal", name);
+  const Box bounds = points.bounds();
+  return Shape{std::move(name), bounds, std::make_shared<const PointCloud>(std::move(points)), false};
 }
 
 Shape shape_from_expression(std::string_view expression, const std::map<std::string, double>& parameters,

@@ -48,4 +48,9 @@ class ProgramTest : public testing::Test {
 inline constexpr const char* tetrahedron_obj =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
+/// Two points with normals as a PLY file.
+inline constexpr const char* points_ply =
+    "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+    "property float nx\nproperty float ny\nproperty float nz\nend_header\n0 0 0 0 0 1\n0 3 4 0 1 0\n";
+
 }  // namespace evenmesh::test

@@ -156,6 +156,29 @@ TEST_F(Jobs, InfoComparesRenders) {
   }
 }
 
+TEST_F(Jobs, InfoOnPoints) {
+  write("two.ply", points_ply);
+  write("three.pts", "3\n0 0 0\n1 0 0\n0 -2 0\n");
+  const Json two = Json::parse(info("two.ply"));
+  EXPECT_EQ(two.at("points"), 2);
+  EXPECT_EQ(two.at("normals"), true);
+  EXPECT_EQ(two.at("spacing"), 5);
+  EXPECT_EQ(two.at("bounds"), (Json{0, 0, 0, 0, 3, 4}));
+  EXPECT_EQ(Json::parse(info("three.pts")).at("normals"), false);
+  const Outcome table = run({"info", "-"}, {.input = "0 0 0\n3 4 0\n"});
+  EXPECT_EQ(table.status, 0) << table.err;
+  EXPECT_TRUE(table.out.starts_with("standard input\n  points ")) << table.out;
+  const Outcome meshed = run({"mesh", "three.pts", "-n", "100", "-o", "x.ply"});
+  EXPECT_EQ(meshed.status, 2);
+  EXPECT_EQ(meshed.err, "error: meshing point clouds is not available in this version\n");
+  for (const Words& words : {Words{"compare", "two.ply", "two.ply"}, Words{"render", "two.ply", "-o", "x.png"}}) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_NE(outcome.err.find("two.ply: holds no triangles, only 2 points"), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(names(), (Words{"three.pts", "two.ply"}));
+}
+
 TEST_F(Jobs, ListsTheGallery) {
   const Outcome text = run({"gallery"});
   EXPECT_EQ(text.status, 0);

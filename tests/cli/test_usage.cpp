@@ -127,8 +127,9 @@ TEST_F(Usage, WrongUsageIsStatus2) {
 
 TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
   write("a.obj", tetrahedron_obj);
-  for (const char* name : {"s.glsl", "s.frag", "s.json", "s.vdb", "s.nii", "s.nii.gz", "s.nrrd", "s.tdx", "s.XYZ"}) {
-    write(name, "1 2 3\n");
+  for (const char* name :
+       {"s.glsl", "s.frag", "s.json", "s.vdb", "s.nii", "s.nii.gz", "s.nrrd", "s.tdx", "s.XYZ", "s.ply"}) {
+    write(name, std::string(name) == "s.ply" ? points_ply : "1 2 3\n");
     const Outcome outcome = run({"mesh", name, "-o", "x.ply"});
     EXPECT_EQ(outcome.status, 2) << name;
     expect_one_sentence(outcome, "not available in this version");
@@ -165,10 +166,12 @@ TEST_F(Usage, UnreadableInputIsStatus3) {
   write("huge.ply",
         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
         "property float y\nproperty float z\nend_header\n");
+  write("word.xyz", "0 0 0\n1 one 0\n");
+  write("count.pts", "9\n0 0 0\n1 1 1\n");
   write("faceless.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
   std::filesystem::create_directory(folder / "folder.obj");
   for (const char* name : {"missing.obj", "missing.xyz", "empty.obj", "garbage.stl", "binary.ply", "truncated.off",
-                           "nan.obj", "index.obj", "huge.ply", "faceless.obj", "folder.obj"}) {
+                           "nan.obj", "index.obj", "huge.ply", "word.xyz", "count.pts", "faceless.obj", "folder.obj"}) {
     SCOPED_TRACE(name);
     const Outcome meshed = run({"mesh", name, "-o", "x.ply"});
     EXPECT_EQ(meshed.status, 3);

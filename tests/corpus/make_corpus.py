@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the seed corpus of the mesh readers' fuzzers: tests/corpus/<format>/, tiny files, valid and malformed.
+"""Writes the seed corpus of the readers' fuzzers: tests/corpus/<format>/, tiny files, valid and malformed.
 
 Files whose name begins with bad_ must be refused, all others must be read. Run it in any folder; the bytes are fixed.
 """
@@ -260,3 +260,81 @@ save("3mf/bad_xml.3mf", package("<object id=1", ITEM))
 save("3mf/bad_other_zip.3mf", zip_file([("word/document.xml", "<a/>")]))
 save("3mf/bad_truncated.3mf", package(ONE, ITEM)[:-30])
 save("3mf/bad_crc.3mf", package(ONE, ITEM, stored=True).replace(b'v1="0"', b'v1="1"'))
+
+# Points -------------------------------------------------------------------------------------------------------------
+# The tetrahedron's corners; all files that are not bad_ hold them, with N as normals where their name has "normals".
+N = [(-.6, -.8, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+ROWS = ["%g %g %g" % v for v in V]
+NORMALS = ["%g %g %g" % n for n in N]
+COLOURS = ["255 0 0", "0 255 0", "0 0 255", "12 34 56"]
+
+
+def table(*columns, before="", nl="\n"):
+    return before + "".join(" ".join(row) + nl for row in zip(*columns))
+
+
+def point_ply(form, names, rows, kind="float", more=""):
+    head = ["ply", f"format {form} 1.0", f"element vertex {len(rows)}", *(f"property {kind} {n}" for n in names)]
+    return "\n".join(head) + "\n" + more + "end_header\n"
+
+
+BOTH = [v + n for v, n in zip(V, N)]
+XYZN = ["x", "y", "z", "nx", "ny", "nz"]
+save("points/plain.xyz", table(ROWS))
+save("points/comments.xyz", "# four points\n// x y z\n\n" + table(ROWS, nl="   # a corner\r\n") + "\n\n#end")
+save("points/commas.xyz", table(ROWS).replace(" ", ", "))
+save("points/semicolons_normals.xyz", table(ROWS, NORMALS).replace(" ", ";").replace("\n", ";\n"))
+save("points/mac.xyz", table(ROWS, nl="\r"))
+save("points/no_last_end.xyz", table(ROWS)[:-1])
+save("points/tabs_normals.xyz", table(ROWS, NORMALS).replace(" ", "\t"))
+save("points/colours.xyz", table(ROWS, COLOURS))
+save("points/intensity.xyz", table(ROWS, ["0.5", "1", "2", "-3e2"]))
+save("points/colours_then_normals.xyz", table(ROWS, COLOURS, NORMALS))
+save("points/normals_then_colours.xyz", table(ROWS, NORMALS, COLOURS))
+save("points/nan_normals.xyz", table(ROWS, ["nan nan nan", *NORMALS[1:]]))
+save("points/count.pts", table(ROWS, before="4\n"))
+save("points/no_count.pts", table(ROWS))
+save("points/intensity.pts", table(ROWS, ["-1200", "0", "17", "2047"], before="4\r\n", nl="\r\n"))
+save("points/intensity_colours.pts", table(ROWS, ["1", "2", "3", "4"], COLOURS, before="4\n"))
+save("points/blocks_normals.pwn", table(ROWS, before="4\n") + table(NORMALS))
+save("points/columns_normals.pwn", table(ROWS, NORMALS, before="4\n"))
+save("points/ascii.ply", point_ply("ascii", "xyz", V) + table(ROWS))
+save("points/ascii_normals.ply", point_ply("ascii", XYZN, V) + table(ROWS, NORMALS))
+save("points/no_faces_normals.ply", point_ply("ascii", XYZN, V, more="element face 0\nproperty list uchar int "
+                                              "vertex_indices\n") + table(ROWS, NORMALS))
+save("points/le_normals.ply", point_ply(LE, XYZN, V).encode() + b"".join(struct.pack("<6f", *r) for r in BOTH))
+save("points/be_normals.ply", point_ply(BE, XYZN, V, "double").encode()
+     + b"".join(struct.pack(">6d", *r) for r in BOTH))
+save("points/le_mixed_normals.ply", point_ply(LE, [*XYZN[3:], "scale", *XYZN[:3]], V).encode()
+     + b"".join(struct.pack("<7f", *n, 9, *v) for v, n in zip(V, N)))
+save("points/le_list_normals.ply", point_ply(LE, XYZN, V, more="property list uchar short tags\n").encode()
+     + b"".join(struct.pack("<6fBh", *r, 1, 7) for r in BOTH))
+save("points/le_half_normal.ply", point_ply(LE, XYZN[:5], V).encode()
+     + b"".join(struct.pack("<5f", *r[:5]) for r in BOTH))
+save("points/nan_normals.ply", point_ply(LE, XYZN, V).encode() + struct.pack("<6f", *V[0], *3 * [float("nan")])
+     + b"".join(struct.pack("<6f", *r) for r in BOTH[1:]))
+save("points/all_zero.ply", point_ply("ascii", XYZN, V) + table(ROWS, 4 * ["0 0 0"]))
+save("points/all_nan.pwn", table(ROWS, 4 * ["nan 0 0"], before="4\n"))
+save("points/bad_empty.xyz", "")
+save("points/bad_comments.xyz", "# nothing\n\n  // but words\n")
+save("points/bad_word.xyz", table(ROWS).replace("0 1 0", "0 one 0"))
+save("points/bad_nan.xyz", table(ROWS).replace("0 1 0", "0 nan 0"))
+save("points/bad_inf.xyz", table(ROWS).replace("0 1 0", "0 1e999 0"))
+save("points/bad_two_columns.xyz", "1 2\n3 4\n")
+save("points/bad_columns.xyz", table(ROWS).replace("0 1 0", "0 1 0 7"))
+save("points/bad_truncated.xyz", table(ROWS, NORMALS)[:-5])
+save("points/bad_decimal_commas.xyz", "1,5 2,5 3,5\n4,5 5,5 6,5\n")
+save("points/bad_gap.xyz", "1,,2,3\n")
+save("points/bad_chemistry.xyz", "3\nwater\nO 0 0 0\nH 1 0 0\nH 0 1 0\n")
+save("points/bad_binary.xyz", bytes(range(256)))
+save("points/bad_more.pts", table(ROWS, before="3\n"))
+save("points/bad_fewer.pts", table(ROWS, before="5\n"))
+save("points/bad_huge.pts", table(ROWS, before="99999999999999999999\n"))
+save("points/bad_only_count.pts", "4\n")
+save("points/bad_truncated.pwn", (table(ROWS, before="4\n") + table(NORMALS))[:-6])
+save("points/bad_no_normals.pwn", table(ROWS, before="4\n"))
+save("points/bad_nan.ply", point_ply("ascii", "xyz", V) + table(ROWS).replace("0 1 0", "0 nan 0"))
+save("points/bad_truncated.ply", point_ply(LE, "xyz", V).encode() + b"\0" * 47)
+save("points/bad_huge.ply", point_ply(LE, XYZN, V).replace("vertex 4", f"vertex {10**15}"))
+save("points/bad_none.ply", point_ply("ascii", "xyz", []))
+save("points/bad_mesh.ply", ply_header("ascii") + ASCII_V + ASCII_F)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/random.h"
 #include "io/bytes.h"
 #include "io/zip.h"
 #include "io_testing.h"
@@ -57,6 +56,8 @@ TEST(Corpus, TruncatedFilesNeverHarm) {
   }
 }
 
+}  // namespace
+
 std::string mutate(std::string bytes, const std::vector<std::string>& others, Random& random) {
   constexpr std::string_view tokens[] = {"-1", "0",  "999999999999", "1e999", "nan", "\n", "/",    "\\\n",
                                          " ",  "\0", "4294967295",   "{}",    "[",   "\"", "-0.5", "#"};
@@ -86,6 +87,8 @@ std::string mutate(std::string bytes, const std::vector<std::string>& others, Ra
   }
   return bytes;
 }
+
+namespace {
 
 TEST(Corpus, MutatedFilesGiveAValidMeshOrASentence) {
   std::vector<std::string> all;

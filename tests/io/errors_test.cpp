@@ -19,10 +19,6 @@ std::string read_refusal(const fs::path& path) {
   return "";
 }
 
-void expect_says(const std::string& message, const std::string& words) {
-  EXPECT_NE(message.find(words), std::string::npos) << "'" << message << "' does not say '" << words << "'";
-}
-
 TEST(Errors, OfFiles) {
   const TemporaryFolder folder;
   expect_says(read_refusal(folder / "none.ply"), "none.ply: no such file");
@@ -31,7 +27,7 @@ TEST(Errors, OfFiles) {
   write_file(folder / "empty.ply", "");
   expect_says(read_refusal(folder / "empty.ply"), "empty.ply: is empty");
   write_file(folder / "text.txt", "Nothing of the kind.\n");
-  expect_says(read_refusal(folder / "text.txt"), "text.txt: is no mesh file that can be recognized");
+  expect_says(read_refusal(folder / "text.txt"), "text.txt: is no file of a mesh or points that can be recognized");
   expect_says(read_refusal(""), "name of the file to read is empty");
 }
 
@@ -73,7 +69,7 @@ TEST(Errors, HostileTokensAreShownShortAndPrintable) {
 
 TEST(Errors, WithoutTriangles) {
   expect_says(refusal("v 0 0 0\nv 1 0 0\n", "a.obj"),
-              "a.obj: holds no triangles, only 2 points; point clouds are not avail");
+              "a.obj: holds no triangles, only 2 points; export the file again");
   for (const MeshFormat format : all_formats) {
     const Mesh points{{{0, 0, 0}, {1, 0, 0}}, {}};
     expect_says(refusal(serialize_mesh(points, format), "points"), "holds no triangles");

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/random.h"
 #include "evenmesh/error.h"
 #include "evenmesh/io.h"
 
@@ -20,11 +21,12 @@ inline fs::path corpus_folder() {
   return fs::path(EVENMESH_SOURCE_DIR) / "tests" / "corpus";
 }
 
-/// The corpus in one order on every machine.
-inline std::vector<fs::path> corpus_files() {
+/// The corpus of meshes, or that of points, in one order on every machine.
+inline std::vector<fs::path> corpus_files(bool points = false) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(corpus_folder())) {
-    if (entry.is_regular_file() && entry.path().extension() != ".py") files.push_back(entry.path());
+    if (!entry.is_regular_file() || entry.path().extension() == ".py") continue;
+    if ((entry.path().parent_path().filename() == "points") == points) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -74,12 +76,41 @@ inline std::string refusal(const std::string& bytes, const std::string& name) {
   return "";
 }
 
+/// The same for points.
+inline std::string point_refusal(const std::string& bytes, const std::string& name) {
+  try {
+    parse_points(bytes, name);
+  } catch (const UnusableInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+inline void expect_says(const std::string& message, const std::string& words) {
+  EXPECT_NE(message.find(words), std::string::npos) << "'" << message << "' does not say '" << words << "'";
+}
+
+inline void expect_valid(const PointCloud& cloud) {
+  EXPECT_FALSE(cloud.points.empty());
+  for (const Vec3& p : cloud.points) ASSERT_TRUE(is_finite(p));
+  for (const Vec3& n : cloud.normals) ASSERT_TRUE(is_finite(n));
+  ASSERT_TRUE(cloud.normals.empty() || cloud.normals.size() == cloud.points.size());
+}
+
 inline void expect_valid(const Mesh& mesh) {
   EXPECT_FALSE(mesh.triangles.empty());
   for (const Vec3& v : mesh.vertices) ASSERT_TRUE(is_finite(v));
   for (const Triangle& t : mesh.triangles) {
     for (const auto v : t) ASSERT_LT(v, mesh.vertices.size());
   }
+}
+
+/// A few random edits: flipped bits, lost bytes, hostile words, pieces of other files.
+std::string mutate(std::string bytes, const std::vector<std::string>& others, Random& random);
+
+inline fs::path data_folder() {
+  if (const char* folder = std::getenv("EVENMESH_DATA")) return folder;
+  return fs::path(EVENMESH_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
 constexpr MeshFormat all_formats[] = {MeshFormat::ply, MeshFormat::obj, MeshFormat::stl,

@@ -182,11 +182,6 @@ TEST(Recognize, ByName) {
   EXPECT_EQ(format_of_name(""), std::nullopt);
 }
 
-fs::path data_folder() {
-  if (const char* folder = std::getenv("EVENMESH_DATA")) return folder;
-  return fs::path(EVENMESH_SOURCE_DIR) / ".." / "shared" / "data";
-}
-
 TEST(Read, RealModels) {
   if (!fs::exists(data_folder() / "armadillo.obj")) GTEST_SKIP() << "the real models are not here; set EVENMESH_DATA";
   for (const auto& entry : fs::directory_iterator(data_folder())) {

@@ -30,6 +30,12 @@ TEST(MeshOptions, OutOfRangeIsRefused) {
   for (std::size_t i = 0; i < std::size(wrong); ++i) EXPECT_THROW(meshed(ball, wrong[i]), InvalidInput) << "case " << i;
 }
 
+TEST(MeshOptions, PointCloudsAreNotMeshedYet) {
+  const Shape points = shape_from_points({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}});
+  EXPECT_THROW(meshed(points, {.vertices = 100}), NotAvailable);
+  EXPECT_THROW(meshed(points, {.vertices = 3}), InvalidInput) << "options are looked at first";
+}
+
 struct Choice {
   const char* name;
   MeshOptions options;

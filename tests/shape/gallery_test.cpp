@@ -266,6 +266,21 @@ TEST(Shape, ChecksMeshes) {
   EXPECT_THROW(shape_from_mesh(wrong), InvalidInput);
 }
 
+TEST(Shape, ChecksPoints) {
+  const PointCloud cloud{{{0, 0, 0}, {1, 2, 3}}, {{0, 0, 1}, {0, 0, 0}}};
+  const Shape shape = shape_from_points(cloud, "two");
+  EXPECT_EQ(shape.bounds, (Box{{0, 0, 0}, {1, 2, 3}}));
+  ASSERT_NE(shape.points(), nullptr);
+  EXPECT_EQ(shape.points()->normals, cloud.normals);
+  EXPECT_EQ(shape.mesh(), nullptr);
+  EXPECT_EQ(shape.field(), nullptr);
+  EXPECT_EQ(shape_from_expression("r-1").points(), nullptr);
+  EXPECT_THROW(shape_from_points({}), UnusableInput);
+  EXPECT_THROW(shape_from_points({cloud.points, {{0, 0, 1}}}), InvalidInput);
+  EXPECT_THROW(shape_from_points({{{0, std::nan(""), 0}}, {}}), InvalidInput);
+  EXPECT_THROW(shape_from_points({{{0, 0, 0}}, {{0, std::nan(""), 0}}}), InvalidInput);
+}
+
 TEST(Shape, ChecksBounds) {
   EXPECT_TRUE(shape_from_expression("r-1").bounds.empty());
   EXPECT_TRUE(shape_from_expression("z", {}, {{-1, -1, -1}, {1, 1, 1}}).capped_by_bounds);
