@@ -25,11 +25,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// Options that are documented but not built yet: never silently ignored.
 void refuse_planned_options(const MeshingArguments& a) {
   if (!a.error.empty()) not_available("--error");
-  if (!a.thickness.empty()) not_available("--thickness");
   if (!a.max_cycle.empty()) not_available("--max-cycle");
   if (!a.dump_dexels.empty()) not_available("--dump-dexels");
   if (!a.entry.empty()) not_available("--entry");
-  choice("--method", a.method, {"auto", "raster"}, {"shell"});
   choice("--connect", a.connect, {"complex"}, {"fragments", "flood"});
   choice("--topology", a.topology, {"keep"}, {"simplify"});
   choice("--backend", a.backend, {"cpu"}, {"gl"});
@@ -54,6 +52,8 @@ MeshOptions mesh_options(const MeshingArguments& a) {
   }
   if (!a.resolution.empty()) options.resolution = whole_number("-r", a.resolution, 8, 8192);
   if (!a.bounds.empty()) options.bounds = box("--bounds", a.bounds);
+  options.method = static_cast<Method>(choice("--method", a.method, {"auto", "raster", "shell"}));
+  if (!a.thickness.empty()) options.thickness = static_cast<unsigned>(whole_number("--thickness", a.thickness, 1, 20));
   options.quality = static_cast<Quality>(choice("--quality", a.quality, {"fast", "normal", "high"}));
   options.optimizer = static_cast<Optimizer>(choice("--optimizer", a.optimizer, {"lbfgs", "lloyd"}));
   options.start = static_cast<Start>(choice("--start", a.start, {"random", "blue-noise", "coarse-to-fine"}));
@@ -86,6 +86,7 @@ Json options_json(const MeshingArguments& a, unsigned threads) {
   given("vertices", a.vertices);
   given("edge_length", a.edge_length);
   given("resolution", a.resolution);
+  given("thickness", a.thickness);
   given("bounds", a.bounds);
   given("quality", a.quality);
   given("method", a.method);

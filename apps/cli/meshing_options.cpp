@@ -35,7 +35,8 @@ void add_effort(CLI::App& app, MeshingArguments& a) {
   };
   option("--quality", a.quality, "EFFORT",
          "fast|normal|high (high anneals: more regular, several times slower);\ndefault normal");
-  option("--method", a.method, "METHOD", "sampling: auto|raster (shell: not available); default auto");
+  option("--method", a.method, "METHOD",
+         "sampling: auto|raster|shell; auto takes the shell for points and for\nopen or broken sheets; default auto");
   option("--optimizer", a.optimizer, "NAME", "lbfgs|lloyd; default lbfgs");
   option("--iterations", a.iterations, "N",
          "evaluations of the energy per level at most, 0 to 10000;\ndefault: by --quality");
@@ -46,7 +47,9 @@ void add_effort(CLI::App& app, MeshingArguments& a) {
   option("--placement", a.placement, "NAME", "of the vertices: centroid|constrained|quadric; default quadric");
   option("--connect", a.connect, "NAME",
          "cells to triangles: complex (fragments, flood: not available);\ndefault complex");
-  option("--thickness", a.thickness, "D", "half width of a shell in voxels; not available in this version");
+  option("--thickness", a.thickness, "D",
+         "half width of the shell in voxels, 1 to 20: gaps narrower than twice\nthat are bridged; default 2, for "
+         "points by their spacing");
   option("--max-cycle", a.max_cycle, "N", "longest cycle of --connect fragments; not available in this version");
 }
 

@@ -15,6 +15,9 @@
 
 namespace evenmesh {
 
+/// How the surface is sampled: by rays through a solid, or by a thin shell of voxels around any surface. Automatic: the
+/// shell for point clouds and for triangle meshes that are far from closed.
+enum class Method { automatic, raster, shell };
 enum class Quality { fast, normal, high };
 enum class Optimizer { lbfgs, lloyd };
 enum class Start { random, blue_noise, coarse_to_fine };
@@ -27,6 +30,10 @@ struct MeshOptions {
   std::optional<double> edge_length{};    ///< mean edge length in model units, > 0
   std::optional<std::size_t>
       resolution{};  ///< samples along the longest side of the bounds, [8, 8192]; default: α ≥ 100 samples per seed
+  Method method = Method::automatic;
+  std::optional<unsigned> thickness{};  ///< half width d of the shell in voxels, [1, 20]: holes and gaps narrower than
+                                        ///< 2d are bridged; default 2, for point clouds by their spacing
+  bool wrap = false;  ///< shell only: the outer side of the shell, closed, instead of the surface in its middle
   std::optional<Box> bounds{};        ///< replaces the shape's own; a surface cut by it is capped
   Quality quality = Quality::normal;  ///< effort of the optimization
   Optimizer optimizer = Optimizer::lbfgs;
@@ -59,7 +66,12 @@ struct Report {
   std::size_t evaluations = 0;
   std::size_t disagreements = 0;       ///< grid points whose inside differed between ray directions, settled by vote
   std::size_t dropped_components = 0;  ///< dust: pieces of surface smaller than a cell, left out
-  std::size_t inserted_seeds = 0;      ///< added because the topology needed them
+  std::size_t sites = 0;               ///< shell: voxels that the surface touches
+  std::size_t shell_voxels = 0;        ///< shell: voxels within the thickness
+  unsigned thickness = 0;              ///< shell: half its width in voxels
+  std::size_t sheets = 0;              ///< shell: connected pieces of surface
+  std::size_t cuts = 0;  ///< shell: sheets that had to end where others meet them, and vertices that were split
+  std::size_t inserted_seeds = 0;  ///< added because the topology needed them
   std::size_t regularization_rounds = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time per stage, in order
   std::size_t peak_memory_bytes = 0;                    ///< of the process, so far
@@ -74,12 +86,15 @@ struct MeshResult {
 /// Samples a shape's surface, spreads seeds evenly over it (centroidal Voronoi tessellation) and connects them.
 ///
 /// Guarantee: closed, two-manifold, oriented outward, without self-intersections; what could not be kept is a notice
-/// with promise_broken. Same bytes for any number of threads. Cost: two cores take about 0.1 ms and 7 kB per vertex.
+/// with promise_broken. The shell method gives a boundary where the surface is open. Same bytes for any number of
+/// threads. Cost: two cores take about 0.1 ms and 7 kB per vertex.
 /// @throws InvalidInput   options out of range
 /// @throws UnusableInput  no surface within the bounds
 /// @throws NotAvailable   the shape is a point cloud
 /// @throws Cancelled      through `run`
-/// Based on Martínez, Claux, Lefebvre, Raster2Mesh, Inria RR-8684, 2015.
+/// Based on Martínez, Claux, Lefebvre, Raster2Mesh, Inria RR-8684, 2015, and, for the shell, on Leung, Wang, He, Liu,
+/// Wang, A unified framework for isotropic meshing based on narrow-banded Euclidean distance transformation,
+/// Computational Visual Media 1(3), 2015.
 MeshResult mesh_shape(const Shape& shape, const MeshOptions& options = {}, Run& run = Run::silent());
 
 /// A line per figure, `"key": value`, as one JSON object (keys of the command line's --json).

@@ -84,8 +84,7 @@ void cut_ears(std::vector<std::uint32_t>& polygon, std::span<const Vec3> positio
 }  // namespace
 
 DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& polygons,
-                              std::span<const std::uint32_t> labels, std::span<const Vec3> positions,
-                              bool open) {
+                              std::span<const std::uint32_t> labels, std::span<const Vec3> positions, bool open) {
   DualMesh mesh;
   TakenEdges taken(polygons, labels, positions.size());
   for_polygons(polygons, labels, [&](std::vector<std::uint32_t>& polygon) {

@@ -12,10 +12,9 @@ namespace {
 
 using Index = std::uint32_t;
 constexpr Index none = 0xffffffffu;
-constexpr float clearly = 0.5f;        ///< |facing| from here on is in front or behind
-constexpr double both_sides = 0.02;    ///< share of a part's sites seen from both sides that calls for a cut
-constexpr double new_sheet = 0.3;      ///< share of a sheet's area over uncovered sites that makes it worth taking
-constexpr double surrounded = 0.98;    ///< share of a rim's neighbours that must be chosen for it to follow
+constexpr double both_sides = 0.02;  ///< share of a part's sites seen from both sides that calls for a cut
+constexpr double new_sheet = 0.3;    ///< share of a sheet's area over uncovered sites that makes it worth taking
+constexpr double surrounded = 0.98;  ///< share of a rim's neighbours that must be chosen for it to follow
 
 Index side_of(float facing) {
   return facing > 0 ? 0 : 1;
@@ -48,9 +47,20 @@ struct Sheet {
 
 class Chooser {
  public:
-  Chooser(const ShellSurface& surface, std::size_t sites, Run& run)
-      : surface_(surface), samples_(surface.samples), run_(run), covered_(sites, 0), links_(collect_links()) {
+  Chooser(const ShellSurface& surface, const SiteVoxels& sites, Run& run)
+      : surface_(surface),
+        samples_(surface.samples),
+        sites_(sites),
+        run_(run),
+        covered_(sites.size(), 0),
+        links_(collect_links()) {
     result_.chosen.assign(samples_.size(), 0);
+    for (const VoxelTile& tile : sites.tiles)
+      for_each_voxel(tile, [&](unsigned x, unsigned y, unsigned z) {
+        const Voxel c = tile.corner();
+        voxel_.push_back({c[0] + std::int32_t(x), c[1] + std::int32_t(y), c[2] + std::int32_t(z)});
+        group_.push_back(static_cast<Index>(64 * (&tile - &sites.tiles[0]) + 16 * (z / 2) + 4 * (y / 2) + x / 2));
+      });
   }
 
   Sheets result() {
@@ -58,6 +68,7 @@ class Chooser {
     find_sheets();
     for (const Sheet& sheet : sheets_in_order()) take(sheet);
     close_rims();
+    mark_border();
     return std::move(result_);
   }
 
@@ -68,20 +79,21 @@ class Chooser {
     for_links(samples_, run_, [&](Index a, Index b) { links.push_back({a, b}); });
     return links;
   }
-  bool is_clear(Index s) const { return std::abs(surface_.facing[s]) >= clearly; }
+  bool is_clear(Index s) const { return std::abs(surface_.facing[s]) >= clearly_facing; }
 
   /// Connected parts, and which of them see sites from both sides.
   void find_parts() {
     part_ = identity(samples_.size());
     for (const auto& [a, b] : links_) unite(part_, a, b);
     for (Index s = 0; s < part_.size(); ++s) part_[s] = find_root(part_, s);
+    // By groups of 2³ voxels: a slanted surface has two layers of sites, and each side sees its own.
     std::vector<Index> seen_by[2];
-    for (auto& list : seen_by) list.assign(covered_.size(), none);
+    for (auto& list : seen_by) list.assign(64 * sites_.tiles.size(), none);
     for (Index s = 0; s < part_.size(); ++s)
-      if (is_clear(s)) seen_by[side_of(surface_.facing[s])][surface_.site[s]] = part_[s];
+      if (is_clear(s)) seen_by[side_of(surface_.facing[s])][group_[surface_.site[s]]] = part_[s];
     std::vector<Index> sites(samples_.size(), 0), twice(samples_.size(), 0);
-    for (std::size_t site = 0; site < covered_.size(); ++site) {
-      const Index front = seen_by[0][site], back = seen_by[1][site];
+    for (std::size_t g = 0; g < seen_by[0].size(); ++g) {
+      const Index front = seen_by[0][g], back = seen_by[1][g];
       if (front != none) ++sites[front];
       if (back != none && back != front) ++sites[back];
       if (front != none && front == back) ++twice[front];
@@ -167,7 +179,14 @@ class Chooser {
       if (one_sided && surface_.facing[s] < 0) continue;
       result_.chosen[s] = 1, taken.push_back(s);
     }
-    for (const Index s : taken) covered_[surface_.site[s]] = 1;
+    for (const Index s : taken) cover(voxel_[surface_.site[s]]);
+  }
+  /// The site's neighbours too: those in a second layer, and those in the depth of a crease, are never seen themselves.
+  void cover(const Voxel& v) {
+    for (std::int32_t z = -1; z <= 1; ++z)
+      for (std::int32_t y = -1; y <= 1; ++y)
+        for (std::int32_t x = -1; x <= 1; ++x)
+          if (const auto site = sites_.tiles.number({v[0] + x, v[1] + y, v[2] + z})) covered_[*site] = 1;
   }
   bool is_one_sided(std::span<const Index> list) {
     if (!needs_cut_[part_[list.front()]]) return false;
@@ -194,10 +213,19 @@ class Chooser {
         result_.chosen[s] = 1;
   }
 
+  void mark_border() {
+    result_.border.assign(samples_.size(), 0);
+    for (const auto& [a, b] : links_)
+      if (result_.chosen[a] != result_.chosen[b]) result_.border[result_.chosen[a] ? a : b] = 1;
+  }
+
   const ShellSurface& surface_;
   const SampleSet& samples_;
+  const SiteVoxels& sites_;
   Run& run_;
   std::vector<char> covered_;  ///< by site
+  std::vector<Voxel> voxel_;   ///< by site
+  std::vector<Index> group_;   ///< by site: of 2³ voxels
   std::vector<std::pair<Index, Index>> links_;
   std::vector<Index> part_, sheet_, first_, members_;
   std::vector<char> needs_cut_;  ///< by part
@@ -206,11 +234,11 @@ class Chooser {
 
 }  // namespace
 
-Sheets choose_sheets(const ShellSurface& surface, std::size_t sites, Run& run) {
+Sheets choose_sheets(const ShellSurface& surface, const SiteVoxels& sites, Run& run) {
   return Chooser(surface, sites, run).result();
 }
 
-std::vector<char> outer_surface(const ShellSurface& surface, Run& run) {
+Sheets outer_sheets(const ShellSurface& surface, Run& run) {
   const SampleSet& samples = surface.samples;
   std::vector<Index> part = identity(samples.size());
   for_links(samples, run, [&](Index a, Index b) { unite(part, a, b); });
@@ -221,9 +249,12 @@ std::vector<char> outer_surface(const ShellSurface& surface, Run& run) {
       const double x = brick_size * block.brick[0] + samples.edge[s].i() + 0.5;
       volume[find_root(part, s)] += samples.edge[s].lower_end_inside() ? x : -x;
     }
-  std::vector<char> chosen(samples.size());
-  for (Index s = 0; s < chosen.size(); ++s) chosen[s] = volume[find_root(part, s)] > 0;
-  return chosen;
+  Sheets result;
+  result.chosen.resize(samples.size());
+  for (Index s = 0; s < samples.size(); ++s) result.chosen[s] = volume[find_root(part, s)] > 0;
+  result.border.assign(samples.size(), 0);
+  result.sheets = static_cast<std::size_t>(std::count_if(volume.begin(), volume.end(), [](double v) { return v > 0; }));
+  return result;
 }
 
 }  // namespace evenmesh

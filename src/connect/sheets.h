@@ -10,8 +10,9 @@ namespace evenmesh {
 
 struct Sheets {
   std::vector<char> chosen;  ///< by sample of the shell's surface
+  std::vector<char> border;  ///< chosen samples with a neighbour that is not
   std::size_t sheets = 0;    ///< connected pieces that were chosen, whole or in part
-  std::size_t cut = 0;       ///< of them those that had to end where other sheets go on: fins, crossings, one-sided ones
+  std::size_t cut = 0;  ///< of them those that had to end where other sheets go on: fins, crossings, one-sided ones
 };
 
 /// Chooses parts of the shell's surface that cover every site once, as far as possible in whole sheets.
@@ -22,9 +23,9 @@ struct Sheets {
 /// sites are covered already.
 ///
 /// Guarantee: same result for any number of threads. Cost: about 0.2 µs per sample.
-Sheets choose_sheets(const ShellSurface& surface, std::size_t sites, Run& run);
+Sheets choose_sheets(const ShellSurface& surface, const SiteVoxels& sites, Run& run);
 
-/// All of the parts that border on the outside: what floods in from the grid's border stops there.
-std::vector<char> outer_surface(const ShellSurface& surface, Run& run);
+/// The parts that border on the outside: where what floods in from the grid's border comes to an end. Nothing is cut.
+Sheets outer_sheets(const ShellSurface& surface, Run& run);
 
 }  // namespace evenmesh

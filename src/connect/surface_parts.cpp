@@ -4,6 +4,7 @@
 
 #include "connect/brick_cubes.h"
 #include "connect/union_find.h"
+#include "sample/blocks.h"
 
 namespace evenmesh {
 
@@ -34,32 +35,7 @@ std::size_t drop_dust(SampleSet& samples, double least_area, Run& run) {
   const auto dropped = static_cast<std::size_t>(
       std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < least_area; }));
   if (dropped == 0) return 0;
-  std::uint32_t kept = 0;
-  std::vector<SampleBlock> blocks;
-  const auto keep = [&](auto& array, std::uint32_t from) {
-    if (!array.empty()) array[kept] = array[from];
-  };
-  for (SampleBlock block : samples.blocks) {
-    const std::uint32_t begin = kept;
-    std::array<std::uint32_t, 2> axis_begin{};
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axis > 0) axis_begin[static_cast<std::size_t>(axis) - 1] = kept;
-      for (std::uint32_t i = block.begin_of_axis(axis); i < block.end_of_axis(axis); ++i) {
-        if (parts.area[parts.part[i]] < least_area) {
-          samples.total_area -= samples.area[i];
-          continue;
-        }
-        keep(samples.x, i), keep(samples.y, i), keep(samples.z, i), keep(samples.area, i);
-        keep(samples.normal, i), keep(samples.edge, i), keep(samples.source, i);
-        ++kept;
-      }
-    }
-    if (kept > begin) blocks.push_back({begin, kept, block.brick, axis_begin});
-  }
-  samples.blocks = std::move(blocks);
-  samples.x.resize(kept), samples.y.resize(kept), samples.z.resize(kept), samples.area.resize(kept);
-  samples.normal.resize(kept), samples.edge.resize(kept);
-  if (!samples.source.empty()) samples.source.resize(kept);
+  keep_samples(samples, [&](std::uint32_t i) { return parts.area[parts.part[i]] >= least_area; });
   return dropped;
 }
 

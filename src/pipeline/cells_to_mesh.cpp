@@ -12,16 +12,6 @@
 #include "pipeline/mend.h"
 
 namespace evenmesh {
-namespace {
-
-constexpr int count_rounds = 3;      ///< attempts to meet the vertex count
-constexpr int seed_rounds = 12;      ///< attempts to make every cell a disk with more seeds
-constexpr int patience = 3;          ///< rounds without a fifth fewer defects until seeds are given up
-constexpr int ball_rounds = 32;      ///< those, and attempts to change the topology where it resists
-constexpr int topology_rounds = 50;  ///< attempts altogether; the last ones divide cells down to single samples
-constexpr int trim_rounds = 6;       ///< attempts to meet the vertex count in the end
-constexpr int trim_seed_rounds = 3;  ///< after each of them
-constexpr std::size_t settling_evaluations = 5;
 
 BalanceOptions balance_options(const MeshOptions& options) {
   BalanceOptions balance;
@@ -36,6 +26,17 @@ BalanceOptions balance_options(const MeshOptions& options) {
   balance.evaluations = options.iterations;
   return balance;
 }
+
+namespace {
+
+constexpr int count_rounds = 3;      ///< attempts to meet the vertex count
+constexpr int seed_rounds = 12;      ///< attempts to make every cell a disk with more seeds
+constexpr int patience = 3;          ///< rounds without a fifth fewer defects until seeds are given up
+constexpr int ball_rounds = 32;      ///< those, and attempts to change the topology where it resists
+constexpr int topology_rounds = 50;  ///< attempts altogether; the last ones divide cells down to single samples
+constexpr int trim_rounds = 6;       ///< attempts to meet the vertex count in the end
+constexpr int trim_seed_rounds = 3;  ///< after each of them
+constexpr std::size_t settling_evaluations = 5;
 
 class Cells {
  public:
@@ -56,7 +57,7 @@ class Cells {
     mend();
     trim_count();
     const bool two_manifold = !needs_seeds();
-    return {std::move(seeds_), std::move(labels_), std::move(complex_.triangles), two_manifold, std::move(balls_)};
+    return {std::move(seeds_), std::move(labels_), std::move(complex_.triangles), two_manifold, {}, std::move(balls_)};
   }
 
  private:

@@ -14,8 +14,12 @@ struct ConnectedCells {
   std::vector<std::uint32_t> labels;  ///< one per sample
   std::vector<Triangle> triangles;    ///< of labels
   bool two_manifold = false;
+  std::vector<std::pair<std::uint32_t, Vec3>> anchors{};  ///< shell: cells at the rim, and their place on it
   BallIndex balls{{}};  ///< united with the solid where the grid could not tell its topology
 };
+
+/// What the options mean for balancing seeds.
+BalanceOptions balance_options(const MeshOptions& options);
 
 /// Balances about `count` seeds on `samples` (dust is removed from them) and connects their cells; the report gets
 /// counts, energies and notices. The vertex count is met by starting with fewer seeds where thin walls split cells.

@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "connect/surface_parts.h"
+#include "geometry/half_edges.h"
 #include "pipeline/cells_to_mesh.h"
 #include "pipeline/fineness.h"
+#include "pipeline/shell_cells.h"
 #include "refine/fit.h"
 #include "refine/flips.h"
 #include "refine/placement.h"
@@ -28,6 +30,8 @@ void check(const MeshOptions& o) {
     throw InvalidInput("the edge length must be a number above 0");
   if (o.resolution && (*o.resolution < 8 || *o.resolution > 8192))
     throw InvalidInput("the resolution must lie in [8, 8192]");
+  if (o.thickness && (*o.thickness < 1 || *o.thickness > 20))
+    throw InvalidInput("the shell's thickness must lie in [1, 20] voxels");
   if (o.iterations && *o.iterations > 10'000) throw InvalidInput("the iterations must lie in [0, 10000]");
   if (!(o.tolerance > 0 && o.tolerance < 1)) throw InvalidInput("the tolerance must lie in (0, 1)");
   if (o.bounds && o.bounds->empty())
@@ -69,12 +73,19 @@ class RegularizedProjector : public Projector {
 class Job {
  public:
   Job(const Shape& shape, const MeshOptions& options, Run& run)
-      : shape_(shape), options_(options), run_(run), stages_(run, report_) {}
+      : shape_(shape), options_(options), run_(run), stages_(run, report_), by_shell_(wants_shell(shape, options)) {}
 
   MeshResult result() {
-    sample();
     ConnectedCells& cells = cells_;
-    cells = balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
+    if (by_shell_) {
+      find_shape_bounds();
+      ShellSampling sampling = sample_by_shell(shape_, options_, stages_, report_, run_);
+      cells = connect_shell(sampling, options_, stages_, report_, run_);
+      samples_ = std::move(sampling.on_surface);
+    } else {
+      sample();
+      cells = balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
+    }
     Mesh mesh = stages_.stage("place", 0.1, [&] { return place(cells); });
     stages_.stage("refine", 0.05, [&] { refine(mesh, cells.labels); });
     stages_.stage("measure", 0.05, [&] { finish(mesh, cells.two_manifold); });
@@ -83,13 +94,22 @@ class Job {
   }
 
  private:
-  void sample() {
+  static bool wants_shell(const Shape& shape, const MeshOptions& options) {
+    if (options.method == Method::shell || options.wrap || shape.points()) return true;
+    return options.method == Method::automatic && shape.mesh() && is_open_surface(*shape.mesh());
+  }
+
+  void find_shape_bounds() {
     if (options_.bounds) {
       if (const Mesh* mesh = shape_.mesh(); mesh == nullptr || !contains(*options_.bounds, shape_.bounds))
         shape_.bounds = *options_.bounds;
     } else if (shape_.bounds.empty()) {
       shape_.bounds = stages_.stage("sample", 0, [&] { return find_bounds(*shape_.field()); });
     }
+  }
+
+  void sample() {
+    find_shape_bounds();
     const Box& bounds = shape_.bounds;
     const SurfaceScale scale =
         stages_.stage("sample", 0.02, [&] { return scout_scale(shape_, options_.resolution.value_or(0), run_); });
@@ -158,8 +178,9 @@ class Job {
     mesh.triangles.reserve(cells.triangles.size());
     for (const Triangle& t : cells.triangles) mesh.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
 
+    separate(mesh);
     edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
-    if (options_.placement != Placement::centroid) {
+    if (options_.placement != Placement::centroid && !options_.wrap) {
       projector_ = make_projector(shape_, shape_.bounds, run_);
       if (!cells.balls.balls().empty())
         projector_ = std::make_unique<RegularizedProjector>(std::move(projector_), cells.balls);
@@ -169,7 +190,21 @@ class Job {
             mesh.vertices[v] = projector_->project(mesh.vertices[v], 0.5 * edge_);
         });
     }
+    for (const auto& [label, place] : cells.anchors)
+      if (const std::uint32_t v = index[label]; v != 0xffffffffu && at_rim_[v]) mesh.vertices[v] = place;
     return mesh;
+  }
+
+  /// Open surfaces: vertices in which several fans of triangles meet are split, and the rim is marked.
+  void separate(Mesh& mesh) {
+    at_rim_.assign(mesh.vertices.size(), 0);
+    if (!by_shell_) return;
+    std::vector<std::uint32_t> source;
+    report_.cuts += separate_fans(mesh, source);
+    const HalfEdges edges(mesh.triangles, mesh.vertices.size());
+    for (std::size_t h = 0; h < 3 * mesh.triangles.size(); ++h)
+      if (edges.opposite(h) == HalfEdges::none)
+        for (const std::size_t c : {h % 3, (h + 1) % 3}) at_rim_[source[mesh.triangles[h / 3][c]]] = 1;
   }
 
   void refine(Mesh& mesh, std::vector<std::uint32_t>& labels) {
@@ -205,7 +240,11 @@ class Job {
              fmt::format("the surface comes closer to itself than the grid can tell, or ends in detail that it cannot: "
                          "{} balls of half an edge or more were united with the solid there",
                          balls));
-    if (!two_manifold || !q.closed() || !q.two_manifold() || !q.oriented())
+    if (by_shell_ && !options_.wrap) {
+      if (!q.two_manifold() || !q.oriented())
+        notice(true, fmt::format("the mesh is not a two-manifold: {} non-manifold edges; ask for more vertices",
+                                 q.non_manifold_edges));
+    } else if (!two_manifold || !q.closed() || !q.two_manifold() || !q.oriented())
       notice(true,
              fmt::format(
                  "the mesh is not a closed two-manifold: {} boundary and {} non-manifold edges; ask for more vertices",
@@ -229,9 +268,11 @@ class Job {
   Run& run_;
   Report report_;
   Stages stages_;
+  bool by_shell_;
   SampleSet samples_;
   ConnectedCells cells_;
   std::unique_ptr<Projector> projector_;
+  std::vector<char> at_rim_;                    ///< by vertex of a label
   std::vector<std::uint32_t> vertex_of_label_;  ///< 0xffffffff: none, its piece of surface is dust
   double edge_ = 0;
 };
@@ -240,7 +281,6 @@ class Job {
 
 MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, Run& run) {
   check(options);
-  if (shape.points()) throw NotAvailable("meshing point clouds is not available in this version");
   return with_threads(run, [&] { return Job(shape, options, run).result(); });
 }
 

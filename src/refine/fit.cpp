@@ -276,6 +276,7 @@ class Attempt {
 
   /// Half way to the mean of the neighbours, along the surface, if that makes the worst triangle around w better.
   bool give_way(std::uint32_t w) {
+    if (rings_.on_boundary(w)) return false;
     Vec3& position = mesh_.vertices[w];
     const Vec3 original = position;
     rings_.normals(w, ring_normals_);

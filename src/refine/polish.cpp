@@ -13,7 +13,7 @@ std::vector<std::uint32_t> vertices_of_bad_triangles(const Mesh& mesh, const Ver
     if (rings.score(t) < 1) bad[t[0]] = bad[t[1]] = bad[t[2]] = 1;
   std::vector<std::uint32_t> list;
   for (std::uint32_t v = 0; v < bad.size(); ++v)
-    if (bad[v]) list.push_back(v);
+    if (bad[v] && !rings.on_boundary(v)) list.push_back(v);
   return list;
 }
 

@@ -23,6 +23,7 @@ class VertexRings {
   std::span<const std::uint32_t> neighbours(std::uint32_t v) const {
     return {beside_.data() + beside_start_[v], beside_start_[v + 1] - beside_start_[v]};
   }
+  bool on_boundary(std::uint32_t v) const { return neighbours(v).size() != triangles(v).size(); }
   /// Area-weighted mean of the triangles' normals, unit length.
   Vec3 normal(std::uint32_t v) const;
   /// Mean edge length of the triangles around v.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
 #include "evenmesh/error.h"
@@ -92,25 +93,23 @@ class Writer {
     const bool up = code.lower_end_inside();
     const Voxel &in = up ? lower : upper, &beyond = up ? upper : lower;
     const std::uint32_t site = site_index(sites_, in, *shell_.find(in));
-    const Vec3 p = shell_.grid().center(shell_.find(in)->site(in)) + Vec3{sites_.x[site], sites_.y[site], sites_.z[site]};
+    const Vec3 p =
+        shell_.grid().center(shell_.find(in)->site(in)) + Vec3{sites_.x[site], sites_.y[site], sites_.z[site]};
     const Vec3 out = shell_.grid().center(beyond) - p;
     Vec3 n = unpack_normal(sites_.normal[site]);
     const double facing = dot(normalized(out), n);
     if (facing < 0) n = -n;
-    // Where the edge leaves the slab of the shell's thickness around the tangent plane, and from there onto the plane.
-    Vec3 offset;
-    if (std::abs(facing) > 0.5) {
-      const Vec3 from = shell_.grid().center(in) - p;
+    // Where the edge leaves the slab of the shell's thickness around the tangent plane.
+    const Vec3 from = shell_.grid().center(in) - p;
+    double t = 0.5;
+    if (std::abs(facing) >= clearly_facing) {
       const double slope = h * (up ? n[int(code.axis())] : -n[int(code.axis())]);
-      const double rise = (shell_.reach() + 0.5) * h - dot(from, n);
-      const double t = slope > 0.2 * h ? std::clamp(rise / slope, 0.0, 1.0) : 0.5;
-      const Vec3 crossing = from + t * (out - from);
-      offset = crossing - dot(crossing, n) * n;
-      const double length = norm(offset);
-      if (length > h) offset *= h / length;
+      if (slope > 0.2 * h) t = std::clamp(((shell_.reach() + 0.5) * h - dot(from, n)) / slope, 0.0, 1.0);
+    } else {
+      n = normalized(out);
     }
     SampleSet& set = out_.samples;
-    const Vec3 local = p + offset - set.block_center(block);
+    const Vec3 local = p + from + t * (out - from) - set.block_center(block);
     set.x[at] = static_cast<float>(local.x), set.y[at] = static_cast<float>(local.y),
     set.z[at] = static_cast<float>(local.z);
     set.area[at] = static_cast<float>(sample_area(n, static_cast<int>(code.axis()), h));
@@ -157,6 +156,38 @@ ShellSurface shell_surface(const Shell& shell, const SiteVoxels& sites, Run& run
     });
     sum_area(set, run);
     return surface;
+  });
+}
+
+void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, const DrawOptions& options, Run& run) {
+  SampleSet& set = surface.samples;
+  const double h = sites.grid.side;
+  std::vector<Vec3> center(sites.size());
+  for (const VoxelTile& tile : sites.tiles) {
+    std::uint64_t at = tile.begin;
+    const Voxel c = tile.corner();
+    for_each_voxel(tile, [&](unsigned x, unsigned y, unsigned z) {
+      center[at++] = sites.grid.center({c[0] + std::int32_t(x), c[1] + std::int32_t(y), c[2] + std::int32_t(z)});
+    });
+  }
+  parallel_for(run, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const Vec3 origin = set.block_center(set.blocks[b]);
+      for (std::uint32_t i = set.blocks[b].begin; i < set.blocks[b].end; ++i) {
+        const std::uint32_t s = surface.site[i];
+        const Vec3 p = center[s] + Vec3{sites.x[s], sites.y[s], sites.z[s]}, n = unpack_normal(set.normal[i]);
+        Vec3 beside;
+        if (std::abs(surface.facing[i]) >= clearly_facing) {
+          beside = origin + Vec3{set.x[i], set.y[i], set.z[i]} - p;
+          beside -= dot(beside, n) * n;
+          const double length = norm(beside), most = options.most_shift * h;
+          if (length > most) beside *= most / length;
+        }
+        const Vec3 local = p + beside + options.rise * h * n - origin;
+        set.x[i] = static_cast<float>(local.x), set.y[i] = static_cast<float>(local.y),
+        set.z[i] = static_cast<float>(local.z);
+      }
+    }
   });
 }
 

@@ -11,13 +11,14 @@ namespace evenmesh {
 
 /// The border between the voxels of a shell and those outside, as samples on the grid of the voxels' centres.
 ///
-/// The shell is the solid: `samples` bound it and link up as those of any solid. But each sample's position is moved
-/// along the surface normal onto the surface in the middle of the shell, and its area is counted there.
+/// The shell is the solid: `samples` bound it and link up as those of any solid. They lie where the edges leave the
+/// shell's thickness around the tangent plane of the nearest site, so over smooth surface they are as even as samples
+/// of the surface itself.
 struct ShellSurface {
   SampleSet samples;                ///< normals point out of the shell; source: that of the site
   std::vector<std::uint32_t> site;  ///< nearest site of each sample, an index into the SiteVoxels
-  /// Cosine between the way from the surface to the sample's place on the border and the surface's normal: 1 in front
-  /// of the surface, −1 behind it, about 0 around its rim.
+  /// Cosine between the way from the surface to the sample and the surface's normal: 1 in front of the surface, −1
+  /// behind it, about 0 around its rim.
   std::vector<float> facing;
 };
 
@@ -25,6 +26,18 @@ struct ShellSurface {
 /// Guarantee: same bytes for any number of threads. Cost: O(shell).
 /// @throws UnusableInput  the shell is empty
 ShellSurface shell_surface(const Shell& shell, const SiteVoxels& sites, Run& run);
+
+/// |facing| from here on is clearly in front or behind.
+inline constexpr float clearly_facing = 0.5f;
+
+struct DrawOptions {
+  double most_shift =
+      1;            ///< voxels that a sample may lie beside its site: 1 where sites are dense, d where they are not
+  double rise = 0;  ///< voxels by which samples are left above the surface, towards the shell's border
+};
+
+/// Moves the samples of a shell's surface along the normals onto the surface in the middle of the shell.
+void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, const DrawOptions& options, Run& run);
 
 /// Normals of sites that have none: of the plane through the sites' points within `radius` voxels, both ways round
 /// (their sign means nothing). Cost: O(sites · radius³).
