@@ -47,10 +47,11 @@ struct Sheet {
 
 class Chooser {
  public:
-  Chooser(const ShellSurface& surface, const SiteVoxels& sites, Run& run)
+  Chooser(const ShellSurface& surface, const SiteVoxels& sites, double least_area, Run& run)
       : surface_(surface),
         samples_(surface.samples),
         sites_(sites),
+        least_area_(least_area),
         run_(run),
         covered_(sites.size(), 0),
         links_(collect_links()) {
@@ -169,6 +170,10 @@ class Chooser {
     for (const Index s : list)
       if (!covered_[surface_.site[s]]) fresh += samples_.area[s];
     if (fresh < new_sheet * sheet.area) return;
+    if (fresh < least_area_) {
+      ++result_.dropped;
+      return;
+    }
     const bool whole = fresh > 0.97 * sheet.area;
     const bool one_sided = is_one_sided(list);
     ++result_.sheets;
@@ -222,6 +227,7 @@ class Chooser {
   const ShellSurface& surface_;
   const SampleSet& samples_;
   const SiteVoxels& sites_;
+  double least_area_;
   Run& run_;
   std::vector<char> covered_;  ///< by site
   std::vector<Voxel> voxel_;   ///< by site
@@ -234,8 +240,8 @@ class Chooser {
 
 }  // namespace
 
-Sheets choose_sheets(const ShellSurface& surface, const SiteVoxels& sites, Run& run) {
-  return Chooser(surface, sites, run).result();
+Sheets choose_sheets(const ShellSurface& surface, const SiteVoxels& sites, double least_area, Run& run) {
+  return Chooser(surface, sites, least_area, run).result();
 }
 
 Sheets outer_sheets(const ShellSurface& surface, Run& run) {

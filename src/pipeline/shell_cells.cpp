@@ -12,6 +12,7 @@
 #include "pipeline/fineness.h"
 #include "pipeline/mend.h"
 #include "sample/blocks.h"
+#include "sample/bridge_points.h"
 
 namespace evenmesh {
 namespace {
@@ -33,6 +34,8 @@ double area_of(const Mesh& mesh) {
 struct ShellPlan {
   std::size_t vertices = 0, resolution = 0;
   unsigned thickness = default_thickness;
+  double spacing = 0;   ///< of points
+  unsigned bridge = 0;  ///< voxels, half the width of the gaps between points that are closed
 };
 
 /// Area by triangles, points or a coarse sampling.
@@ -64,30 +67,31 @@ ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& rep
   const double h = std::sqrt(samples_per_voxel_area * area / (wanted_alpha * static_cast<double>(plan.vertices)));
   double resolution = std::clamp(std::ceil(longest / h), 32.0, 8192.0);
   if (options.resolution) resolution = static_cast<double>(*options.resolution);
-  if (points && !options.thickness) {
+  plan.thickness = options.thickness.value_or(default_thickness);
+  if (points) {
     // Random points leave gaps of up to about three times their spacing.
     const double voxels = 1.6 * spacing * resolution / longest;
     if (!options.resolution && voxels > most_thickness) resolution = std::floor(resolution * most_thickness / voxels);
-    plan.thickness = static_cast<unsigned>(
-        std::clamp(std::ceil(1.6 * spacing * resolution / longest), double(default_thickness), double(most_thickness)));
+    plan.spacing = spacing;
+    plan.bridge = options.thickness.value_or(static_cast<unsigned>(std::clamp(
+        std::ceil(1.6 * spacing * resolution / longest), double(default_thickness), double(most_thickness))));
+    plan.thickness = default_thickness;
     report.notices.push_back(
-        {false, fmt::format("points about {:.3g} apart: a shell of {} voxels each way bridges gaps "
-                            "of up to {:.3g}",
-                            spacing, plan.thickness, 2 * plan.thickness * longest / resolution)});
-  } else {
-    plan.thickness = options.thickness.value_or(default_thickness);
+        {false, fmt::format("points about {:.3g} apart: gaps of up to {:.3g} ({} voxels) are bridged", spacing,
+                            2 * plan.bridge * longest / resolution, 2 * plan.bridge)});
   }
   plan.resolution = static_cast<std::size_t>(resolution);
   return plan;
 }
 
 SiteVoxels voxelize(const Shape& shape, const ShellPlan& plan, Run& run) {
-  const VoxelGrid grid = make_voxel_grid(shape.bounds, plan.resolution, plan.thickness + 2);
+  const VoxelGrid grid = make_voxel_grid(shape.bounds, plan.resolution, std::max(plan.thickness, plan.bridge) + 2);
   if (const Mesh* mesh = shape.mesh()) return voxelize_mesh(*mesh, grid, run);
   if (const PointCloud* points = shape.points()) {
-    SiteVoxels sites = voxelize_points(points->points, points->normals, grid, run);
-    if (sites.normal.empty()) estimate_normals(sites, 2 * plan.thickness, run);
-    return sites;
+    SiteVoxels sparse = voxelize_points(points->points, points->normals, grid, run);
+    if (sparse.size() == 0) return sparse;
+    if (sparse.normal.empty()) estimate_normals(sparse, 2 * plan.bridge, run);
+    return bridge_points(sparse, build_shell(sparse, plan.bridge, run), plan.spacing, !points->normals.empty(), run);
   }
   return voxelize_field(*shape.field(), grid, shape.bounds, run);
 }
@@ -122,12 +126,16 @@ ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, St
     sampling.surface = shell_surface(shell, sites, run);
   });
   stages.stage("sheets", 0.1, [&] {
-    sampling.sheets = options.wrap ? outer_sheets(sampling.surface, run) : choose_sheets(sampling.surface, sites, run);
+    // Cells on one sheet and not worth a triangle of their own; of points, what noise makes.
+    const double cell = 0.5 * sampling.surface.samples.total_area / static_cast<double>(plan.vertices);
+    const double least_area = (shape.points() ? 10 : 2) * cell;
+    sampling.sheets =
+        options.wrap ? outer_sheets(sampling.surface, run) : choose_sheets(sampling.surface, sites, least_area, run);
     const auto keep = [&](std::uint32_t i) { return sampling.sheets.chosen[i] != 0; };
     sampling.samples = sampling.surface.samples;
     keep_samples(sampling.samples, keep);
     ShellSurface drawn = sampling.surface;
-    draw_onto_surface(drawn, sites, {shape.points() ? plan.thickness : 1.0, options.wrap ? 1.0 : 0.0}, run);
+    draw_onto_surface(drawn, sites, {1.0, options.wrap ? 1.0 : 0.0}, run);
     sampling.on_surface = std::move(drawn.samples);
     keep_samples(sampling.on_surface, keep);
   });
@@ -143,6 +151,7 @@ ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, St
                             report.seeds_asked, least_alpha, plan.resolution, most)});
     report.seeds_asked = static_cast<std::size_t>(most);
   }
+  report.dropped_components = sampling.sheets.dropped;
   if (sampling.sheets.cut > 0)
     report.notices.push_back(
         {false, fmt::format("{} sheets of surface end where others meet or cross them", sampling.sheets.cut)});
