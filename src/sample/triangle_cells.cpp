@@ -73,8 +73,8 @@ void TriangleCells::set(const LatticeTriangle& corners, int bits, const CellBox&
     box_[v_] = {};
     return;
   }
-  rows_.resize(static_cast<std::size_t>(box_[v_].last - box_[v_].first + 1));
-  columns_.resize(static_cast<std::size_t>(box_[u_].last - box_[u_].first + 1));
+  rows_.resize(box_[v_].count());
+  columns_.resize(box_[u_].count());
   const auto row = [&](std::int32_t v) -> Row& { return rows_[static_cast<std::size_t>(v - box_[v_].first)]; };
   cut_slabs(v_, u_, [&](std::int32_t v, const CellRange& u) { row(v).u.add(u); });
   cut_slabs(v_, w_, [&](std::int32_t v, const CellRange& w) { row(v).w.add(w); });
