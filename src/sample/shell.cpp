@@ -85,7 +85,8 @@ void add_tile(const VoxelTile& tile, const Voxel& corner, std::int32_t reach, Sh
   for (std::int32_t z = std::max(0, -dz); z < std::min(8, span - dz); ++z)
     for (std::int32_t y = std::max(0, -dy); y < std::min(8, span - dy); ++y) {
       const std::uint64_t row = tile.layers[std::size_t(z)] >> (8 * y) & 255;
-      if (row != 0) window.rows[std::size_t((dz + z) * span + dy + y)] |= (dx < 0 ? row >> -dx : row << dx) & inside;
+      if (row != 0)
+        window.rows[static_cast<std::uint32_t>((dz + z) * span + dy + y)] |= (dx < 0 ? row >> -dx : row << dx) & inside;
     }
 }
 

@@ -42,7 +42,9 @@ class Shell {
   /// Voxels of the shell.
   std::uint64_t size() const { return tiles_.voxels(); }
   /// Memory of the tiles and their voxels.
-  std::size_t bytes() const { return tiles_.bytes() + nearest_.capacity() * sizeof(nearest_[0]) + size() * 4; }
+  std::size_t bytes() const {
+    return tiles_.bytes() + nearest_.capacity() * sizeof(void*) + size() * sizeof(NearestSite);
+  }
 
   /// The voxels of tile i, in order.
   std::span<const NearestSite> nearest(std::size_t i) const { return {nearest_[i], tiles_[i].count()}; }

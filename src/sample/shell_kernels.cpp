@@ -59,7 +59,7 @@ HWY_INLINE void keep(const Row& row, const std::uint32_t* limits, unsigned y, un
   for (unsigned half = 0; half < 2; ++half) tiles[half].layers[z] |= bits[half] << (8 * y);
 }
 
-void TransformBlock(const ShellSteps& steps, const ShellWindow& window, ShellBlockOut& out) {
+void transform(const ShellSteps& steps, const ShellWindow& window, ShellBlockOut& out) {
   constexpr unsigned side = shell_block;
   const unsigned span = side + 2 * steps.reach;
   const std::uint64_t reached = (std::uint64_t{2} << 2 * steps.reach) - 1;
@@ -112,24 +112,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace evenmesh {
 
-HWY_EXPORT(TransformBlock);
+HWY_EXPORT(transform);
 
 void transform_block(const ShellSteps& steps, const ShellWindow& window, ShellBlockOut& out) {
-  HWY_DYNAMIC_DISPATCH(TransformBlock)(steps, window, out);
+  HWY_DYNAMIC_DISPATCH(transform)(steps, window, out);
 }
 
 ShellSteps::ShellSteps(unsigned d) : reach(d) {
   const auto r = static_cast<std::int32_t>(d);
+  const auto at = [](std::int32_t i) { return static_cast<std::size_t>(i); };
   const auto key = [](std::int32_t by, unsigned shift) {
     return static_cast<std::uint32_t>((by * by << 18) + by * (1 << shift));
   };
-  for (std::int32_t by = -r; by <= r; ++by)
-    along_y[std::size_t(by + r)] = key(by, 6), along_z[std::size_t(by + r)] = key(by, 12);
+  for (std::int32_t by = -r; by <= r; ++by) along_y[at(by + r)] = key(by, 6), along_z[at(by + r)] = key(by, 12);
   constexpr std::uint32_t zero = 32u << 12 | 32u << 6 | 32u;
   for (std::int32_t b = 0; b < std::int32_t(shell_block) + 2 * r; ++b)
     for (std::int32_t x = 0; x < std::int32_t(shell_block); ++x) {
       const std::int32_t by = b - r - x;
-      along_x[std::size_t(b)][std::size_t(x)] = by < -r || by > r ? none : zero + key(by, 0);
+      along_x[at(b)][at(x)] = by < -r || by > r ? none : zero + key(by, 0);
     }
 }
 

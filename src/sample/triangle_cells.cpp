@@ -59,15 +59,22 @@ void TriangleCells::cut_slabs(std::size_t axis, std::size_t across, const Add& a
 void TriangleCells::set(const LatticeTriangle& corners, int bits, const CellBox& within) {
   corners_ = corners, bits_ = bits;
   box_ = cells_of_box(corners, bits);
+  const bool one_cell = box_[0].first == box_[0].last && box_[1].first == box_[1].last && box_[2].first == box_[2].last;
   for (std::size_t a = 0; a < 3; ++a) box_[a] = box_[a].cut(within[a]);
+  if (one_cell) {
+    has_plane_ = false;
+    rows_.assign(1, {box_[u_], box_[w_]});
+    columns_.assign(1, box_[w_]);
+    return;
+  }
   set_plane();
   rows_.clear(), columns_.clear();
   if (box_[0].empty() || box_[1].empty() || box_[2].empty()) {
     box_[v_] = {};
     return;
   }
-  rows_.resize(static_cast<std::size_t>(box_[v_].last - box_[v_].first + 1));
-  columns_.resize(static_cast<std::size_t>(box_[u_].last - box_[u_].first + 1));
+  rows_.resize(box_[v_].count());
+  columns_.resize(box_[u_].count());
   const auto row = [&](std::int32_t v) -> Row& { return rows_[static_cast<std::size_t>(v - box_[v_].first)]; };
   cut_slabs(v_, u_, [&](std::int32_t v, const CellRange& u) { row(v).u.add(u); });
   cut_slabs(v_, w_, [&](std::int32_t v, const CellRange& w) { row(v).w.add(w); });

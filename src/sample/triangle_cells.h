@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -16,6 +17,7 @@ struct CellRange {
   std::int32_t first = std::numeric_limits<std::int32_t>::max(), last = std::numeric_limits<std::int32_t>::min();
 
   bool empty() const { return first > last; }
+  std::size_t count() const { return empty() ? 0 : static_cast<std::size_t>(last - first) + 1; }
   void add(const CellRange& r) { first = std::min(first, r.first), last = std::max(last, r.last); }
   CellRange cut(const CellRange& r) const { return {std::max(first, r.first), std::min(last, r.last)}; }
 };

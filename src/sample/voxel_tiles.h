@@ -76,7 +76,8 @@ class VoxelTiles {
     const std::uint32_t group =
         directory_[(std::size_t(group_k) * groups_[1] + std::size_t(group_j)) * groups_[0] + std::size_t(group_i)];
     if (group == 0) return nullptr;
-    const std::uint32_t tile = entries_[group - 1][std::size_t((k & 7) * 64 + (j & 7) * 8 + (i & 7))];
+    const auto in_group = static_cast<std::uint32_t>((k & 7) << 6 | (j & 7) << 3 | (i & 7));
+    const std::uint32_t tile = entries_[group - 1][in_group];
     return tile == 0 ? nullptr : &tiles_[tile - 1];
   }
   /// The tile that holds a voxel of the grid.

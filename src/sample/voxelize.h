@@ -30,16 +30,17 @@ struct SiteVoxels {
 
 /// The voxels that the triangles of a mesh touch.
 ///
-/// The surface point is the point of the touching triangles that is nearest to the voxel's centre, of several the one
-/// on the lowest triangle; it lies within √3/2 voxels of the centre, so near edges and corners of the surface it may
-/// lie in a neighbouring voxel. Any triangles will do: open, intersecting, of either orientation, degenerate ones
-/// (their normal is arbitrary). Guarantee: vertices are snapped to a lattice of 2^-16 voxels (coarser when the mesh is
-/// much larger than the grid); then exactly the closed voxels that a closed triangle touches, see TriangleCells; none
-/// is missed, one in a face of two voxels marks both. Same bytes for any number of threads. Cost: O(triangles + sites),
-/// about 0.1 µs per pair of a triangle and a voxel; 8 bytes per triangle, 12 per vertex and 24 per site more while it
-/// runs.
-/// @throws InvalidInput  an index is out of range, a coordinate not finite, the mesh is a million times larger than the
-/// grid, or there are more than 4 billion sites
+/// The surface point is the point of the touching triangles that is nearest to the voxel's centre, of several (compared
+/// in single precision) the one on the lowest triangle. It lies within √3/2 voxels of the centre: near edges of the
+/// surface perhaps in a neighbouring voxel, but always on the surface. Any triangles will do: open, intersecting, of
+/// either orientation, degenerate ones (their normal is arbitrary).
+/// Guarantee: vertices are snapped to a lattice of 2^-16 voxels, coarser when they lie more than 11,585 voxels away
+/// from the grid's origin; then the closed voxels that a closed triangle touches, exactly (see TriangleCells): none is
+/// missed, a triangle in the face of two voxels marks both. Same bytes for any number of threads.
+/// Cost: O(triangles + sites), about 0.1 µs per pair of a triangle and a voxel; while it runs, 16 bytes per triangle,
+/// 12 per vertex and 16 per site more than the result.
+/// @throws InvalidInput  an index is out of range, a coordinate not finite or 7·10^8 voxels away, or there are more
+/// than 4 billion sites
 SiteVoxels voxelize_mesh(const Mesh& mesh, const VoxelGrid& grid, Run& run = Run::silent());
 
 /// The voxels that hold a point of a cloud; a point on a face belongs to the upper voxel.

@@ -4,7 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <numbers>
+#include <limits>
 
 #include "evenmesh/error.h"
 #include "geometry/triangle.h"

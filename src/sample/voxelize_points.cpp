@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "evenmesh/error.h"
 #include "sample/field_parts.h"

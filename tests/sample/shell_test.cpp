@@ -1,6 +1,7 @@
 #include "sample/shell.h"
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
 #include "evenmesh/error.h"
 #include "geometry/primitives.h"
@@ -116,17 +117,31 @@ TEST(Shell, TiesGoToTheFirstSiteByZThenYThenX) {
   }
 }
 
-TEST(Shell, ThreadsDoNotMatter) {
-  const Mesh mesh = make_torus();
-  const SiteVoxels sites = voxelize_mesh(mesh, make_voxel_grid(mesh.bounds(), 120, 6));
-  evenmesh::Run one(1), two(2);
-  const Shell a = build_shell(sites, 5, one), b = build_shell(sites, 5, two);
+void expect_same(const Shell& a, const Shell& b) {
   ASSERT_TRUE(same_tiles(a.tiles(), b.tiles()));
   for (std::size_t t = 0; t < a.tiles().size(); ++t) {
     const auto u = a.nearest(t), v = b.nearest(t);
     ASSERT_EQ(u.size(), a.tiles()[t].count());
     EXPECT_TRUE(std::equal(u.begin(), u.end(), v.begin(), v.end(),
                            [](NearestSite p, NearestSite q) { return p.bits == q.bits; }));
+  }
+}
+
+TEST(Shell, ThreadsAndInstructionSetsDoNotMatter) {
+  const Mesh mesh = make_torus();
+  const SiteVoxels sites = voxelize_mesh(mesh, make_voxel_grid(mesh.bounds(), 120, 6));
+  evenmesh::Run one(1), two(2);
+  const Shell shell = build_shell(sites, 5, one);
+  expect_same(shell, build_shell(sites, 5, two));
+  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
+    const std::int64_t target = targets & -targets;
+    if (target == HWY_EMU128 || target == HWY_SCALAR) continue;
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    const Shell other = build_shell(sites, 5, one);
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    expect_same(shell, other);
   }
 }
 
