@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "connect/brick_cubes.h"
+#include "connect/brick_union.h"
 #include "connect/dual_polygons.h"
-#include "connect/union_find.h"
 
 namespace evenmesh {
 namespace {
@@ -23,15 +22,11 @@ class Complex {
         labels_(labels),
         run_(run),
         bricks_(cube_bricks(samples, run)),
-        parent_(samples.size()),
+        sets_(samples, bricks_, run),
         polygons_(bricks_.size()),
-        cross_links_(bricks_.size()),
         euler_(label_count) {}
 
   void link() {
-    parallel_for(run_, samples_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) parent_[i] = static_cast<Index>(i);
-    });
     tbb::enumerable_thread_specific<Tally> tallies([&] { return Tally(samples_, euler_.size()); });
     parallel_for(run_, bricks_.size(), 64, [&](std::size_t begin, std::size_t end) {
       Tally& tally = tallies.local();
@@ -41,7 +36,8 @@ class Complex {
       for (std::size_t l = 0; l < euler_.size(); ++l) euler_[l] += tally.twice_euler[l];
       loops_ += tally.loops;
     }
-    join_bricks();
+    sets_.settle(run_);
+    collect_roots();
   }
 
   /// The polygons of these bricks again, after some labels changed.
@@ -56,7 +52,7 @@ class Complex {
     });
   }
 
-  std::vector<Index>& parent() { return parent_; }
+  std::vector<Index>& parent() { return sets_.parent(); }
   /// One sample of every connected piece of a label, ascending.
   const std::vector<Index>& roots() const { return roots_; }
   const std::vector<CubeBrick>& bricks() const { return bricks_; }
@@ -78,17 +74,8 @@ class Complex {
     const std::int64_t own_block = bricks_[b].block[0];
     const Index own_begin = own_block < 0 ? 1 : samples_.blocks[own_block].begin;
     const Index own_end = own_block < 0 ? 0 : samples_.blocks[own_block].end;
-    const auto own = [&](Index s) { return s >= own_begin && s < own_end; };
     for (Index s = own_begin; s < own_end; ++s)
       if (labels_[s] != no_label) tally.twice_euler[labels_[s]] += 2;
-    auto& cross = cross_links_[b];
-    const auto join = [&](Index s, Index t) {
-      if (own(s) && own(t)) {
-        if (parent_[s] != parent_[t]) unite(parent_, s, t);
-      } else {
-        cross.push_back({s, t});
-      }
-    };
     // Every link is met twice, from the cubes on both sides of the face, and counts −1 each time.
     tally.walker.walk(bricks_[b], [&](const Index* loop, int n) {
       ++tally.loops;
@@ -98,14 +85,14 @@ class Complex {
       if (uniform) {
         if (label == no_label) return;
         tally.twice_euler[label] += 2 - n;
-        for (int i = 1; i < n; ++i) join(loop[i - 1], loop[i]);
+        for (int i = 1; i < n; ++i) sets_.join(b, loop[i - 1], loop[i]);
         return;
       }
       for (int i = 0; i < n; ++i) {
         const Index s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
         if (labels_[s] != labels_[t] || labels_[s] == no_label) continue;
         --tally.twice_euler[labels_[s]];
-        join(s, t);
+        sets_.join(b, s, t);
       }
       add_polygon(b, loop, n);
     });
@@ -125,40 +112,12 @@ class Complex {
     polygons.insert(polygons.end(), run, run + runs);
   }
 
-  /// Unites across bricks: roots are settled in parallel, the few distinct pairs of them serially.
-  void join_bricks() {
-    parallel_for(run_, samples_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        Index root = static_cast<Index>(i);
-        while (parent_[root] != root) root = parent_[root];
-        parent_[i] = root;  // roots stay roots: no other thread's walk is misled
-      }
-    });
-    parallel_for(run_, bricks_.size(), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) {
-        // Few roots meet in one brick: looking through the pairs found so far, the latest first, is fast.
-        auto& cross = cross_links_[b];
-        auto last = cross.begin();
-        for (const auto& [s, t] : cross) {
-          const std::pair<Index, Index> pair = std::minmax({parent_[s], parent_[t]});
-          if (pair.first == pair.second) continue;
-          if (std::find(std::make_reverse_iterator(last), cross.rend(), pair) == cross.rend()) *last++ = pair;
-        }
-        cross.erase(last, cross.end());
-      }
-    });
-    for (const auto& cross : cross_links_)
-      for (const auto& [s, t] : cross) unite(parent_, s, t);
-    cross_links_.clear();
-    collect_roots();
-  }
-
   void collect_roots() {
     constexpr std::size_t piece = 1 << 16;
     std::vector<std::vector<Index>> of_piece((samples_.size() + piece - 1) / piece);
     parallel_tasks(run_, of_piece.size(), [&](std::size_t p) {
       for (std::size_t i = p * piece; i < std::min(samples_.size(), (p + 1) * piece); ++i)
-        if (parent_[i] == i && labels_[i] != no_label) of_piece[p].push_back(static_cast<Index>(i));
+        if (sets_.parent()[i] == i && labels_[i] != no_label) of_piece[p].push_back(static_cast<Index>(i));
     });
     for (const auto& list : of_piece) roots_.insert(roots_.end(), list.begin(), list.end());
   }
@@ -167,9 +126,9 @@ class Complex {
   std::vector<Index>& labels_;
   Run& run_;
   std::vector<CubeBrick> bricks_;
-  std::vector<Index> parent_, roots_;
+  BrickUnion sets_;
+  std::vector<Index> roots_;
   std::vector<std::vector<Index>> polygons_;
-  std::vector<std::vector<std::pair<Index, Index>>> cross_links_;
   std::vector<std::int64_t> euler_;
   std::int64_t loops_ = 0;
 };

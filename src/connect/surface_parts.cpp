@@ -2,30 +2,21 @@
 
 #include <algorithm>
 
-#include "connect/brick_cubes.h"
-#include "connect/union_find.h"
+#include "connect/brick_union.h"
 #include "sample/blocks.h"
 
 namespace evenmesh {
 
 SurfaceParts surface_parts(const SampleSet& samples, Run& run) {
-  std::vector<std::uint32_t> parent(samples.size());
-  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = static_cast<std::uint32_t>(i);
-  CubeWalker walker(samples);
-  for (const CubeBrick& brick : cube_bricks(samples, run)) {
-    run.throw_if_cancelled();
-    walker.walk(brick, [&](const std::uint32_t* loop, int n) {
-      for (int i = 1; i < n; ++i) unite(parent, loop[0], loop[i]);
-    });
-  }
+  const std::vector<std::uint32_t> roots =
+      part_roots(samples, cube_bricks(samples, run), run, [](std::uint32_t, std::uint32_t) { return true; });
   SurfaceParts parts;
   parts.part.resize(samples.size());
-  std::vector<std::uint32_t> number(samples.size());
-  for (std::uint32_t i = 0; i < parent.size(); ++i) {
-    const std::uint32_t root = find_root(parent, i);  // the part's first sample
-    if (root == i) number[i] = static_cast<std::uint32_t>(parts.area.size()), parts.area.push_back(0);
-    parts.part[i] = number[root];
-    parts.area[number[root]] += samples.area[i];
+  for (std::uint32_t i = 0; i < roots.size(); ++i) {
+    const bool first = roots[i] == i;
+    parts.part[i] = first ? static_cast<std::uint32_t>(parts.area.size()) : parts.part[roots[i]];
+    if (first) parts.area.push_back(0);
+    parts.area[parts.part[i]] += samples.area[i];
   }
   return parts;
 }
