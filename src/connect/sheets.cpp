@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <span>
 
-#include "connect/brick_cubes.h"
-#include "connect/union_find.h"
+#include "connect/brick_union.h"
 
 namespace evenmesh {
 namespace {
@@ -20,30 +19,21 @@ Index side_of(float facing) {
   return facing > 0 ? 0 : 1;
 }
 
-/// Calls visit(sample, sample) for neighbours on the surface, every pair at least once.
-template <typename Visit>
-void for_links(const SampleSet& samples, Run& run, const Visit& visit) {
-  CubeWalker walker(samples);
-  for (const CubeBrick& brick : cube_bricks(samples, run)) {
-    run.throw_if_cancelled();
-    walker.walk(brick, [&](const Index* loop, int n) {
-      for (int i = 0; i < n; ++i) visit(loop[i], loop[i + 1 == n ? 0 : i + 1]);
-    });
-  }
-}
-
-std::vector<Index> identity(std::size_t count) {
-  std::vector<Index> list(count);
-  std::iota(list.begin(), list.end(), Index{0});
-  return list;
-}
-
 /// A connected set of samples that face the same way, or of those around a rim.
 struct Sheet {
-  Index root = 0;
+  Index id = 0;
+  bool rim = false;
   double area = 0, in_front = 0;
+  Vec3 middle;        ///< times the area
   double volume = 0;  ///< under it, seen from its own middle
 };
+
+/// Numbers the sets 0, 1, … by their roots, in place; returns how many there are.
+std::size_t number_sets(std::vector<Index>& roots) {
+  Index count = 0;
+  for (Index s = 0; s < roots.size(); ++s) roots[s] = roots[s] == s ? count++ : roots[roots[s]];
+  return count;
+}
 
 class Chooser {
  public:
@@ -53,9 +43,10 @@ class Chooser {
         sites_(sites),
         least_area_(least_area),
         run_(run),
-        covered_(sites.size(), 0),
-        links_(collect_links()) {
+        bricks_(cube_bricks(samples_, run)),
+        covered_(sites.size(), 0) {
     result_.chosen.assign(samples_.size(), 0);
+    result_.border.assign(samples_.size(), 0);
     for (const VoxelTile& tile : sites.tiles)
       for_each_voxel(tile, [&](unsigned x, unsigned y, unsigned z) {
         const Voxel c = tile.corner();
@@ -67,40 +58,35 @@ class Chooser {
   Sheets result() {
     find_parts();
     find_sheets();
-    for (const Sheet& sheet : sheets_in_order()) take(sheet);
+    group_members();
+    for (const Index sheet : sheets_in_order()) take(sheets_[sheet]);
     close_rims();
-    mark_border();
     return std::move(result_);
   }
 
  private:
-  std::vector<std::pair<Index, Index>> collect_links() const {
-    std::vector<std::pair<Index, Index>> links;
-    links.reserve(4 * samples_.size());
-    for_links(samples_, run_, [&](Index a, Index b) { links.push_back({a, b}); });
-    return links;
-  }
   bool is_clear(Index s) const { return std::abs(surface_.facing[s]) >= clearly_facing; }
+  bool is_rim(Index s) const { return sheets_[sheet_[s]].rim; }
 
   /// Connected parts, and which of them see sites from both sides.
   void find_parts() {
-    part_ = identity(samples_.size());
-    for (const auto& [a, b] : links_) unite(part_, a, b);
-    for (Index s = 0; s < part_.size(); ++s) part_[s] = find_root(part_, s);
+    part_ = part_roots(samples_, bricks_, run_, [](Index, Index) { return true; });
+    const std::size_t parts = number_sets(part_);
     // By groups of 2³ voxels: a slanted surface has two layers of sites, and each side sees its own.
     std::vector<Index> seen_by[2];
     for (auto& list : seen_by) list.assign(64 * sites_.tiles.size(), none);
     for (Index s = 0; s < part_.size(); ++s)
       if (is_clear(s)) seen_by[side_of(surface_.facing[s])][group_[surface_.site[s]]] = part_[s];
-    std::vector<Index> sites(samples_.size(), 0), twice(samples_.size(), 0);
+    std::vector<std::size_t> sites(parts, 0), twice(parts, 0);
     for (std::size_t g = 0; g < seen_by[0].size(); ++g) {
       const Index front = seen_by[0][g], back = seen_by[1][g];
       if (front != none) ++sites[front];
       if (back != none && back != front) ++sites[back];
       if (front != none && front == back) ++twice[front];
     }
-    needs_cut_.assign(samples_.size(), 0);
-    for (Index p = 0; p < needs_cut_.size(); ++p) needs_cut_[p] = twice[p] > both_sides * sites[p];
+    needs_cut_.assign(parts, 0);
+    for (std::size_t p = 0; p < parts; ++p)
+      needs_cut_[p] = static_cast<double>(twice[p]) > both_sides * static_cast<double>(sites[p]);
   }
 
   bool same_sheet(Index a, Index b) const {
@@ -110,62 +96,62 @@ class Chooser {
     return dot(unpack_normal(samples_.normal[a]), unpack_normal(samples_.normal[b])) > -0.2;
   }
   void find_sheets() {
-    sheet_ = identity(samples_.size());
-    for (const auto& [a, b] : links_)
-      if (same_sheet(a, b)) unite(sheet_, a, b);
-    for (Index s = 0; s < sheet_.size(); ++s) sheet_[s] = find_root(sheet_, s);
-  }
-  bool is_rim(Index s) const { return needs_cut_[part_[s]] && !is_clear(s); }
-
-  /// The largest first; those in front of the input's triangles, and outsides, count for more.
-  std::vector<Sheet> sheets_in_order() const {
-    std::vector<Sheet> by_root(samples_.size());
-    std::vector<Vec3> middle(samples_.size());
+    std::size_t count = needs_cut_.size();
+    if (std::find(needs_cut_.begin(), needs_cut_.end(), 1) == needs_cut_.end()) {
+      sheet_ = part_;
+    } else {
+      sheet_ = part_roots(samples_, bricks_, run_, [this](Index a, Index b) { return same_sheet(a, b); });
+      count = number_sets(sheet_);
+    }
+    sheets_.resize(count);
+    for (Index i = 0; i < count; ++i) sheets_[i].id = i;
     const auto each = [&](const auto& use) {
       for (const SampleBlock& block : samples_.blocks)
         for (Index s = block.begin; s < block.end; ++s)
-          if (!is_rim(s))
-            use(s, samples_.block_center(block) + Vec3{samples_.x[s], samples_.y[s], samples_.z[s]},
-                double(samples_.area[s]));
+          use(s, sheets_[sheet_[s]], samples_.block_center(block) + Vec3{samples_.x[s], samples_.y[s], samples_.z[s]},
+              double(samples_.area[s]));
     };
-    each([&](Index s, const Vec3& p, double area) {
-      Sheet& sheet = by_root[sheet_[s]];
-      sheet.root = sheet_[s];
+    each([&](Index s, Sheet& sheet, const Vec3& p, double area) {
+      sheet.rim = needs_cut_[part_[s]] && !is_clear(s);
       sheet.area += area;
       if (surface_.facing[s] > 0) sheet.in_front += area;
-      middle[sheet_[s]] += area * p;
+      sheet.middle += area * p;
     });
-    each([&](Index s, const Vec3& p, double area) {
-      Sheet& sheet = by_root[sheet_[s]];
-      sheet.volume += area * dot(p - middle[sheet_[s]] / sheet.area, unpack_normal(samples_.normal[s]));
+    each([&](Index s, Sheet& sheet, const Vec3& p, double area) {
+      sheet.volume += area * dot(p - sheet.middle / sheet.area, unpack_normal(samples_.normal[s]));
     });
-    std::erase_if(by_root, [](const Sheet& s) { return s.area <= 0; });
-    const auto weight = [](const Sheet& s) {
-      return s.area * (s.in_front > 0.5 * s.area ? 1.2 : 1.0) * (s.volume > 0 ? 1.2 : 1.0);
-    };
-    std::sort(by_root.begin(), by_root.end(), [&](const Sheet& a, const Sheet& b) {
-      return weight(a) != weight(b) ? weight(a) > weight(b) : a.root < b.root;
-    });
-    return by_root;
   }
 
-  /// Samples of a sheet, by root.
-  std::span<const Index> members(Index root) {
-    if (members_.empty()) {
-      first_.assign(samples_.size() + 1, 0);
-      for (const Index r : sheet_) ++first_[r + 1];
-      for (std::size_t r = 0; r < samples_.size(); ++r) first_[r + 1] += first_[r];
-      members_.resize(samples_.size());
-      std::vector<Index> next(first_.begin(), first_.end() - 1);
-      for (Index s = 0; s < sheet_.size(); ++s) members_[next[sheet_[s]]++] = s;
-    }
-    return {members_.data() + first_[root], first_[root + 1] - first_[root]};
+  /// The largest first; those in front of the input's triangles, and outsides, count for more.
+  std::vector<Index> sheets_in_order() const {
+    std::vector<Index> order;
+    for (const Sheet& sheet : sheets_)
+      if (!sheet.rim && sheet.area > 0) order.push_back(sheet.id);
+    const auto weight = [&](Index i) {
+      const Sheet& s = sheets_[i];
+      return s.area * (s.in_front > 0.5 * s.area ? 1.2 : 1.0) * (s.volume > 0 ? 1.2 : 1.0);
+    };
+    std::sort(order.begin(), order.end(),
+              [&](Index a, Index b) { return weight(a) != weight(b) ? weight(a) > weight(b) : a < b; });
+    return order;
+  }
+
+  void group_members() {
+    first_.assign(sheets_.size() + 1, 0);
+    for (const Index sheet : sheet_) ++first_[sheet + 1];
+    for (std::size_t i = 0; i < sheets_.size(); ++i) first_[i + 1] += first_[i];
+    members_.resize(samples_.size());
+    std::vector<Index> next(first_.begin(), first_.end() - 1);
+    for (Index s = 0; s < sheet_.size(); ++s) members_[next[sheet_[s]]++] = s;
+  }
+  std::span<const Index> members(const Sheet& sheet) const {
+    return {members_.data() + first_[sheet.id], first_[sheet.id + 1] - first_[sheet.id]};
   }
 
   /// Takes what lies over sites that are not covered. A sheet that sees sites from both sides, like that of a Möbius
   /// strip, is taken in front only.
   void take(const Sheet& sheet) {
-    const auto list = members(sheet.root);
+    const auto list = members(sheet);
     double fresh = 0;
     for (const Index s : list)
       if (!covered_[surface_.site[s]]) fresh += samples_.area[s];
@@ -184,44 +170,60 @@ class Chooser {
       if (one_sided && surface_.facing[s] < 0) continue;
       result_.chosen[s] = 1, taken.push_back(s);
     }
-    for (const Index s : taken) cover(voxel_[surface_.site[s]]);
+    for (const Index s : taken) cover(surface_.site[s]);
   }
   /// The site's neighbours too: those in a second layer, and those in the depth of a crease, are never seen themselves.
-  void cover(const Voxel& v) {
+  void cover(Index site) {
+    if (covered_[site] == 2) return;
+    covered_[site] = 2;
+    const Voxel& v = voxel_[site];
     for (std::int32_t z = -1; z <= 1; ++z)
       for (std::int32_t y = -1; y <= 1; ++y)
         for (std::int32_t x = -1; x <= 1; ++x)
-          if (const auto site = sites_.tiles.number({v[0] + x, v[1] + y, v[2] + z})) covered_[*site] = 1;
+          if (const auto n = sites_.tiles.number({v[0] + x, v[1] + y, v[2] + z}); n && covered_[*n] == 0)
+            covered_[*n] = 1;
   }
-  bool is_one_sided(std::span<const Index> list) {
+  bool is_one_sided(std::span<const Index> list) const {
     if (!needs_cut_[part_[list.front()]]) return false;
-    std::size_t front = 0, both = 0;
+    std::size_t both = 0;
     std::vector<Index> sites;
     for (const Index s : list)
       if (surface_.facing[s] > 0) sites.push_back(surface_.site[s]);
     std::sort(sites.begin(), sites.end());
-    for (const Index s : list) {
-      front += surface_.facing[s] > 0;
+    for (const Index s : list)
       both += surface_.facing[s] < 0 && std::binary_search(sites.begin(), sites.end(), surface_.site[s]);
-    }
-    return front > 0 && both > list.size() / 10;
+    return both > list.size() / 10;
   }
 
-  /// What looked like a rim, but has chosen samples all around, was a sharp crease.
+  /// What looked like a rim, but has chosen samples all around, was a sharp crease. Then the border is marked.
   void close_rims() {
-    std::vector<Index> around(samples_.size(), 0), chosen(samples_.size(), 0);
-    for (const auto& [a, b] : links_)
-      for (const auto& [s, t] : {std::pair{a, b}, std::pair{b, a}})
-        if (is_rim(s) && !is_rim(t)) ++around[sheet_[s]], chosen[sheet_[s]] += result_.chosen[t] != 0;
-    for (Index s = 0; s < sheet_.size(); ++s)
-      if (is_rim(s) && around[sheet_[s]] > 0 && chosen[sheet_[s]] >= surrounded * around[sheet_[s]])
-        result_.chosen[s] = 1;
+    if (std::find(result_.chosen.begin(), result_.chosen.end(), 0) == result_.chosen.end()) return;
+    std::vector<std::size_t> around(sheets_.size(), 0), chosen(sheets_.size(), 0);
+    for_links([&](Index s, Index t) {
+      if (is_rim(s) && !is_rim(t)) ++around[sheet_[s]], chosen[sheet_[s]] += result_.chosen[t] != 0;
+    });
+    for (const Sheet& sheet : sheets_)
+      if (sheet.rim && around[sheet.id] > 0 &&
+          static_cast<double>(chosen[sheet.id]) >= surrounded * static_cast<double>(around[sheet.id]))
+        for (const Index s : members(sheet)) result_.chosen[s] = 1;
+    for_links([&](Index s, Index t) {
+      if (result_.chosen[s] && !result_.chosen[t]) result_.border[s] = 1;
+    });
   }
-
-  void mark_border() {
-    result_.border.assign(samples_.size(), 0);
-    for (const auto& [a, b] : links_)
-      if (result_.chosen[a] != result_.chosen[b]) result_.border[result_.chosen[a] ? a : b] = 1;
+  /// Calls visit(sample, neighbour) for neighbours in parts that are cut, both ways round.
+  template <typename Visit>
+  void for_links(const Visit& visit) {
+    CubeWalker walker(samples_);
+    for (const CubeBrick& brick : bricks_) {
+      run_.throw_if_cancelled();
+      walker.walk(brick, [&](const Index* loop, int n) {
+        for (int i = 0; i < n; ++i) {
+          const Index s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
+          if (sheet_[s] == sheet_[t] && result_.chosen[s] == result_.chosen[t]) continue;
+          visit(s, t), visit(t, s);
+        }
+      });
+    }
   }
 
   const ShellSurface& surface_;
@@ -229,12 +231,13 @@ class Chooser {
   const SiteVoxels& sites_;
   double least_area_;
   Run& run_;
-  std::vector<char> covered_;  ///< by site
+  std::vector<CubeBrick> bricks_;
+  std::vector<char> covered_;  ///< by site: 1 beside what is covered, 2 covered itself
   std::vector<Voxel> voxel_;   ///< by site
   std::vector<Index> group_;   ///< by site: of 2³ voxels
-  std::vector<std::pair<Index, Index>> links_;
   std::vector<Index> part_, sheet_, first_, members_;
   std::vector<char> needs_cut_;  ///< by part
+  std::vector<Sheet> sheets_;
   Sheets result_;
 };
 
@@ -246,18 +249,17 @@ Sheets choose_sheets(const ShellSurface& surface, const SiteVoxels& sites, doubl
 
 Sheets outer_sheets(const ShellSurface& surface, Run& run) {
   const SampleSet& samples = surface.samples;
-  std::vector<Index> part = identity(samples.size());
-  for_links(samples, run, [&](Index a, Index b) { unite(part, a, b); });
+  std::vector<Index> part = part_roots(samples, cube_bricks(samples, run), run, [](Index, Index) { return true; });
   // The volume within a part: from its crossings along x. Cavities come out negative.
-  std::vector<double> volume(samples.size(), 0);
+  std::vector<double> volume(number_sets(part), 0);
   for (const SampleBlock& block : samples.blocks)
     for (Index s = block.begin; s < block.end_of_axis(0); ++s) {
       const double x = brick_size * block.brick[0] + samples.edge[s].i() + 0.5;
-      volume[find_root(part, s)] += samples.edge[s].lower_end_inside() ? x : -x;
+      volume[part[s]] += samples.edge[s].lower_end_inside() ? x : -x;
     }
   Sheets result;
   result.chosen.resize(samples.size());
-  for (Index s = 0; s < samples.size(); ++s) result.chosen[s] = volume[find_root(part, s)] > 0;
+  for (Index s = 0; s < samples.size(); ++s) result.chosen[s] = volume[part[s]] > 0;
   result.border.assign(samples.size(), 0);
   result.sheets = static_cast<std::size_t>(std::count_if(volume.begin(), volume.end(), [](double v) { return v > 0; }));
   return result;
