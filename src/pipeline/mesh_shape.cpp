@@ -214,7 +214,7 @@ class Job {
     flip_to_delaunay(mesh);
     if (options_.placement == Placement::quadric) {
       for (std::uint32_t& l : labels) l = vertex_of_label_[l];
-      fit_extremes(mesh, samples_, labels, projector_.get(), run_);
+      fit_extremes(mesh, samples_, labels, projector_.get(), by_shell_ ? 3 * report_.spacing : 0, run_);
     }
     // Files hold single precision: what matters is that the mesh written does not intersect itself.
     const auto find = [&](Mesh m) {

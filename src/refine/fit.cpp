@@ -20,8 +20,16 @@ constexpr std::size_t samples_per_cell = 20;
 /// Samples of every vertex' cell: some, or all where it matters.
 class CellSamples {
  public:
-  CellSamples(const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, std::size_t vertices, Run& run)
-      : samples_(samples), vertex_of_sample_(vertex_of_sample), run_(run), start_(vertices + 1, 0), list_(vertices, 0) {
+  /// @param projector  brings samples onto the surface within `error`; null: they lie on it
+  CellSamples(const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, std::size_t vertices,
+              const Projector* projector, double error, Run& run)
+      : samples_(samples),
+        vertex_of_sample_(vertex_of_sample),
+        projector_(projector),
+        error_(error),
+        run_(run),
+        start_(vertices + 1, 0),
+        list_(vertices, 0) {
     const std::size_t stride =
         std::max<std::size_t>(1, samples.size() / (samples_per_cell * std::max<std::size_t>(1, vertices)));
     const auto each = [&](const auto& visit) {
@@ -35,6 +43,7 @@ class CellSamples {
     points_.resize(start_.back());
     std::vector<std::size_t> fill(start_.begin(), start_.end() - 1);
     each([&](std::size_t b, std::size_t i) { points_[fill[vertex_of_sample[i]]++] = position(b, i); });
+    correct(points_);
   }
   std::span<const Vec3> of(std::uint32_t v) const {
     if (list_[v] > 0) return lists_[list_[v] - 1];
@@ -54,6 +63,7 @@ class CellSamples {
     });
     for (const auto& of_piece : found)
       for (const auto& [list, point] : of_piece) lists_[list].push_back(point);
+    for (auto& list : lists_) correct(list);
   }
 
  private:
@@ -61,8 +71,17 @@ class CellSamples {
     return samples_.block_center(samples_.blocks[block]) + Vec3{samples_.x[i], samples_.y[i], samples_.z[i]};
   }
 
+  void correct(std::vector<Vec3>& points) const {
+    if (projector_ == nullptr) return;
+    parallel_for(run_, points.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) points[i] = projector_->project(points[i], error_);
+    });
+  }
+
   const SampleSet& samples_;
   std::span<const std::uint32_t> vertex_of_sample_;
+  const Projector* projector_;
+  double error_;
   Run& run_;
   std::vector<std::size_t> start_;
   std::vector<Vec3> points_;
@@ -325,8 +344,9 @@ std::vector<std::uint32_t> take_independent(const Fit& fit, std::vector<std::uin
 }  // namespace
 
 std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
-                         const Projector* projector, Run& run) {
-  CellSamples cells(samples, vertex_of_sample, mesh.vertices.size(), run);
+                         const Projector* projector, double sample_error, Run& run) {
+  CellSamples cells(samples, vertex_of_sample, mesh.vertices.size(), sample_error > 0 ? projector : nullptr,
+                    sample_error, run);
   Fit fit(mesh, cells, projector);
   fit.measure_deviations(run);
   const auto far = fit.far_vertices(0);

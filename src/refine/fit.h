@@ -18,10 +18,11 @@ namespace evenmesh {
 /// deviation. Each round looks at the cells that are nearly as far off as the worst; places that are near enough, and
 /// those that would not lower the largest distance, keep their shape.
 ///
+/// @param sample_error  how far samples may lie off the surface, model units: they are brought onto it first; 0 = exact
 /// @param vertex_of_sample  vertex whose cell each sample belongs to, none (0xffffffff) for dust
 /// Guarantee: same bits for any number of threads. Cost: about 30 ns per sample, and a millisecond for every place
 /// tried. Returns the number of places that came nearer.
 std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
-                         const Projector* projector, Run& run);
+                         const Projector* projector, double sample_error, Run& run);
 
 }  // namespace evenmesh

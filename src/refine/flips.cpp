@@ -55,24 +55,29 @@ class Flipper {
     return !joined(h, d) && valence(h) > 3 && valence(o) > 3;
   }
 
+  /// Calls visit(half-edge) for those that start where h does: all around, or up to the boundary both ways.
+  template <typename Visit>
+  void around_start(std::uint32_t h, const Visit& visit) const {
+    std::uint32_t e = h;
+    do {
+      visit(e);
+      e = opposite_[HalfEdges::previous(e)];
+    } while (e != h && e != HalfEdges::none);
+    if (e == h) return;
+    for (e = opposite_[h]; e != HalfEdges::none; e = opposite_[HalfEdges::next(e)]) visit(HalfEdges::next(e));
+  }
   /// Whether the apex of h already has an edge to d.
   bool joined(std::uint32_t h, std::uint32_t d) const {
-    const std::uint32_t first = HalfEdges::previous(h);
-    std::uint32_t e = first;
-    do {
-      if (start(HalfEdges::next(e)) == d) return true;
-      e = opposite_[HalfEdges::previous(e)];
-    } while (e != first && e != HalfEdges::none);
-    return false;
+    bool found = false;
+    around_start(HalfEdges::previous(h), [&](std::uint32_t e) {
+      found |= start(HalfEdges::next(e)) == d || start(HalfEdges::previous(e)) == d;
+    });
+    return found;
   }
   /// Number of triangles around the start of h.
   int valence(std::uint32_t h) const {
     int n = 0;
-    std::uint32_t e = h;
-    do {
-      ++n;
-      e = opposite_[HalfEdges::previous(e)];
-    } while (e != h && e != HalfEdges::none);
+    around_start(h, [&](std::uint32_t) { ++n; });
     return n;
   }
 

@@ -33,7 +33,7 @@ TEST_P(FitExtremes, LowersTheLargestDeviation) {
   expect_closed_manifold(cells.mesh);
   Mesh fitted = cells.mesh;
   const double worst = worst_score(fitted);
-  EXPECT_GT(fit_extremes(fitted, cells.samples, cells.labels, projector.get(), run), 0u);
+  EXPECT_GT(fit_extremes(fitted, cells.samples, cells.labels, projector.get(), 0, run), 0u);
   expect_closed_manifold(fitted);
   EXPECT_LT(largest_deviation(cells, fitted), 0.9 * largest_deviation(cells, cells.mesh));
   EXPECT_GE(worst_score(fitted), std::min(worst, 0.92) - 1e-9) << "triangles stay good";
@@ -52,7 +52,7 @@ TEST(FitSmooth, LeavesSmoothSurfacesAlone) {
   CellMesh cells = mesh_of_cells(shape, 60, 300);
   for (Vec3& v : cells.mesh.vertices) v = projector->project(v, 0.1);
   const auto vertices = cells.mesh.vertices;
-  EXPECT_EQ(fit_extremes(cells.mesh, cells.samples, cells.labels, projector.get(), run), 0u);
+  EXPECT_EQ(fit_extremes(cells.mesh, cells.samples, cells.labels, projector.get(), 0, run), 0u);
   EXPECT_EQ(cells.mesh.vertices, vertices);
 }
 
@@ -60,7 +60,7 @@ TEST(FitSmooth, SamplesOfDustAreLeftOut) {
   evenmesh::Run run(1);
   CellMesh cells = mesh_of_cells(gallery_shape("sphere"), 40, 100);
   std::fill(cells.labels.begin(), cells.labels.end(), 0xffffffffu);
-  EXPECT_EQ(fit_extremes(cells.mesh, cells.samples, cells.labels, nullptr, run), 0u);
+  EXPECT_EQ(fit_extremes(cells.mesh, cells.samples, cells.labels, nullptr, 0, run), 0u);
 }
 
 }  // namespace
