@@ -20,8 +20,10 @@ struct MeshingArguments {
   std::string method = "auto", connect = "complex", topology = "keep", features = "off", density = "uniform";
   std::string backend = "cpu", threads = "0", progress = "auto";
   std::string report, json;
-  std::string error, thickness, max_cycle, dump_dexels, entry;  ///< documented, not available yet
+  std::string thickness;
+  std::string error, max_cycle, dump_dexels, entry;  ///< documented, not available yet
   bool quiet = false, verbose = false;
+  bool wrap = false;
 };
 
 void add_meshing_options(CLI::App& app, MeshingArguments& arguments);

@@ -33,9 +33,9 @@ struct MeshOptions {
   Method method = Method::automatic;
   std::optional<unsigned> thickness{};  ///< half width d of the shell in voxels, [1, 20]: holes and gaps narrower than
                                         ///< 2d are bridged; default 2, for point clouds by their spacing
-  bool wrap = false;  ///< shell only: the outer side of the shell, closed, instead of the surface in its middle
-  std::optional<Box> bounds{};        ///< replaces the shape's own; a surface cut by it is capped
-  Quality quality = Quality::normal;  ///< effort of the optimization
+  bool wrap = false;                    ///< a closed mesh one voxel around the surface instead, by the shell
+  std::optional<Box> bounds{};          ///< replaces the shape's own; a surface cut by it is capped
+  Quality quality = Quality::normal;    ///< effort of the optimization
   Optimizer optimizer = Optimizer::lbfgs;
   Start start = Start::coarse_to_fine;
   Placement placement = Placement::quadric;

@@ -79,9 +79,14 @@ class Job {
     ConnectedCells& cells = cells_;
     if (by_shell_) {
       find_shape_bounds();
-      ShellSampling sampling = sample_by_shell(shape_, options_, stages_, report_, run_);
-      cells = connect_shell(sampling, options_, stages_, report_, run_);
-      samples_ = std::move(sampling.on_surface);
+      if (options_.wrap) {
+        samples_ = sample_wrapping(shape_, options_, stages_, report_, run_);
+        cells = balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
+      } else {
+        ShellSampling sampling = sample_by_shell(shape_, options_, stages_, report_, run_);
+        cells = connect_shell(sampling, options_, stages_, report_, run_);
+        samples_ = std::move(sampling.on_surface);
+      }
     } else {
       sample();
       cells = balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
@@ -198,7 +203,7 @@ class Job {
   /// Open surfaces: vertices in which several fans of triangles meet are split, and the rim is marked.
   void separate(Mesh& mesh) {
     at_rim_.assign(mesh.vertices.size(), 0);
-    if (!by_shell_) return;
+    if (!by_shell_ || options_.wrap) return;
     std::vector<std::uint32_t> source;
     report_.cuts += separate_fans(mesh, source);
     const HalfEdges edges(mesh.triangles, mesh.vertices.size());
@@ -214,7 +219,8 @@ class Job {
     flip_to_delaunay(mesh);
     if (options_.placement == Placement::quadric) {
       for (std::uint32_t& l : labels) l = vertex_of_label_[l];
-      fit_extremes(mesh, samples_, labels, projector_.get(), by_shell_ ? 3 * report_.spacing : 0, run_);
+      fit_extremes(mesh, samples_, labels, projector_.get(), by_shell_ && !options_.wrap ? 3 * report_.spacing : 0,
+                   run_);
     }
     // Files hold single precision: what matters is that the mesh written does not intersect itself.
     const auto find = [&](Mesh m) {

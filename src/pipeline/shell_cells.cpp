@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "cvt/starts.h"
+#include "connect/surface_parts.h"
 #include "geometry/half_edges.h"
 #include "geometry/triangle.h"
 #include "pipeline/fineness.h"
@@ -86,7 +86,8 @@ ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& rep
 }
 
 SiteVoxels voxelize(const Shape& shape, const ShellPlan& plan, Run& run) {
-  const VoxelGrid grid = make_voxel_grid(shape.bounds, plan.resolution, std::max(plan.thickness, plan.bridge) + 2);
+  const VoxelGrid grid =
+      make_voxel_grid(shape.bounds, plan.resolution, std::max(plan.thickness, plan.bridge) + plan.thickness + 2);
   if (const Mesh* mesh = shape.mesh()) return voxelize_mesh(*mesh, grid, run);
   if (const PointCloud* points = shape.points()) {
     SiteVoxels sparse = voxelize_points(points->points, points->normals, grid, run);
@@ -115,6 +116,52 @@ bool is_open_surface(const Mesh& mesh) {
          norm(sum) > 0.03 * area;
 }
 
+namespace {
+
+/// Counts, and no more seeds than the samples can feed.
+void report_sampling(const ShellPlan& plan, std::size_t samples, const SiteVoxels& sites, Report& report) {
+  report.seeds_asked = plan.vertices;
+  report.resolution = plan.resolution, report.thickness = plan.thickness;
+  report.spacing = sites.grid.side;
+  report.sites = sites.size(), report.samples = samples;
+  const double most = std::max(4.0, std::floor(static_cast<double>(samples) / least_alpha));
+  if (static_cast<double>(plan.vertices) <= most) return;
+  report.notices.push_back(
+      {false, fmt::format("{} vertices would have fewer than {} samples each at resolution {}; meshing with {:.0f}",
+                          plan.vertices, least_alpha, plan.resolution, most)});
+  report.seeds_asked = static_cast<std::size_t>(most);
+}
+
+/// The sites around the outer border of a shell.
+SiteVoxels outer_border(const ShellSurface& surface, const Sheets& outer, const VoxelGrid& grid, Run& run) {
+  const SampleSet& samples = surface.samples;
+  std::vector<Vec3> points, normals;
+  for (const SampleBlock& block : samples.blocks)
+    for (std::uint32_t i = block.begin; i < block.end; ++i) {
+      if (!outer.chosen[i]) continue;
+      points.push_back(samples.block_center(block) + Vec3{samples.x[i], samples.y[i], samples.z[i]});
+      normals.push_back(unpack_normal(samples.normal[i]));
+    }
+  return voxelize_points(points, normals, grid, run);
+}
+
+/// The inner side of a shell, turned around: the border of what the shell encloses.
+SampleSet enclosed_by(const ShellSurface& surface, Run& run) {
+  SampleSet samples = surface.samples;
+  const SurfaceParts parts = surface_parts(samples, run);
+  std::vector<double> behind(parts.area.size(), 0);
+  for (std::uint32_t i = 0; i < samples.size(); ++i)
+    if (surface.facing[i] < 0) behind[parts.part[i]] += samples.area[i];
+  keep_samples(samples, [&](std::uint32_t i) { return behind[parts.part[i]] > 0.5 * parts.area[parts.part[i]]; });
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples.edge[i].bits ^= 1;
+    samples.normal[i] = pack_normal(-unpack_normal(samples.normal[i]));
+  }
+  return samples;
+}
+
+}  // namespace
+
 ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report,
                               Run& run) {
   const ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
@@ -130,33 +177,45 @@ ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, St
     // Cells on one sheet and not worth a triangle of their own; of points, what noise makes.
     const double cell = 0.5 * sampling.surface.samples.total_area / static_cast<double>(plan.vertices);
     const double least_area = (shape.points() ? 10 : 2) * cell;
-    sampling.sheets =
-        options.wrap ? outer_sheets(sampling.surface, run) : choose_sheets(sampling.surface, sites, least_area, run);
+    sampling.sheets = choose_sheets(sampling.surface, sites, least_area, run);
     const auto keep = [&](std::uint32_t i) { return sampling.sheets.chosen[i] != 0; };
     sampling.samples = sampling.surface.samples;
     keep_samples(sampling.samples, keep);
     ShellSurface drawn = sampling.surface;
-    draw_onto_surface(drawn, sites, {1.0, options.wrap ? 1.0 : 0.0}, run);
+    draw_onto_surface(drawn, sites, run);
     sampling.on_surface = std::move(drawn.samples);
     keep_samples(sampling.on_surface, keep);
   });
-  report.seeds_asked = plan.vertices;
-  report.resolution = plan.resolution, report.thickness = plan.thickness;
-  report.spacing = sites.grid.side;
-  report.sites = sites.size(), report.samples = sampling.samples.size();
+  if (sampling.samples.size() == 0)
+    throw UnusableInput("no piece of the surface is large enough for this fineness: ask for more vertices");
+  report_sampling(plan, sampling.samples.size(), sites, report);
   report.sheets = sampling.sheets.sheets, report.cuts = sampling.sheets.cut;
-  const double most = std::max(4.0, std::floor(static_cast<double>(report.samples) / least_alpha));
-  if (static_cast<double>(report.seeds_asked) > most) {
-    report.notices.push_back(
-        {false, fmt::format("{} vertices would have fewer than {} samples each at resolution {}; meshing with {:.0f}",
-                            report.seeds_asked, least_alpha, plan.resolution, most)});
-    report.seeds_asked = static_cast<std::size_t>(most);
-  }
   report.dropped_components = sampling.sheets.dropped;
   if (sampling.sheets.cut > 0)
     report.notices.push_back(
         {false, fmt::format("{} sheets of surface end where others meet or cross them", sampling.sheets.cut)});
   return sampling;
+}
+
+SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report, Run& run) {
+  ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
+  plan.thickness = std::max(plan.thickness, 2u);
+  if (plan.bridge > 0) plan.bridge = std::max(plan.bridge, plan.thickness);
+  const SiteVoxels sites = stages.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, run); });
+  if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
+  SampleSet samples = stages.stage("shell", 0.1, [&] {
+    const Shell shell = build_shell(sites, plan.thickness, run);
+    report.shell_voxels = shell.size();
+    const ShellSurface surface = shell_surface(shell, sites, run);
+    const SiteVoxels border = outer_border(surface, outer_sheets(surface, run), sites.grid, run);
+    return enclosed_by(shell_surface(build_shell(border, plan.thickness - 1, run), border, run), run);
+  });
+  if (samples.size() == 0) throw UnusableInput("the surface is too small for its grid: raise the resolution");
+  report_sampling(plan, samples.size(), sites, report);
+  report.notices.push_back({false, fmt::format("the wrap lies about {:.3g} outside of the surface, and closes what is "
+                                               "narrower than {:.3g}",
+                                               sites.grid.side, 2 * plan.thickness * sites.grid.side)});
+  return samples;
 }
 
 namespace {

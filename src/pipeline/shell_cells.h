@@ -22,6 +22,10 @@ bool is_open_surface(const Mesh& mesh);
 /// @throws UnusableInput  nothing of the surface lies within the bounds
 ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report, Run& run);
 
+/// The same for the solid that wraps the surface: what the outside cannot reach, eroded back by the thickness to one
+/// voxel above the surface (a morphological closing). Closed, whatever the input is; its samples bound a solid.
+SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report, Run& run);
+
 /// Balances `report.seeds_asked` seeds and connects their cells; seeds are added where the topology needs them.
 ///
 /// The result is a two-manifold with boundary: where that takes a cut, vertices are split in `separate_fans`.

@@ -159,7 +159,7 @@ ShellSurface shell_surface(const Shell& shell, const SiteVoxels& sites, Run& run
   });
 }
 
-void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, const DrawOptions& options, Run& run) {
+void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, Run& run) {
   SampleSet& set = surface.samples;
   const double h = sites.grid.side;
   std::vector<Vec3> center(sites.size());
@@ -180,10 +180,10 @@ void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, const Dra
         if (std::abs(surface.facing[i]) >= clearly_facing) {
           beside = origin + Vec3{set.x[i], set.y[i], set.z[i]} - p;
           beside -= dot(beside, n) * n;
-          const double length = norm(beside), most = options.most_shift * h;
-          if (length > most) beside *= most / length;
+          const double length = norm(beside);
+          if (length > h) beside *= h / length;
         }
-        const Vec3 local = p + beside + options.rise * h * n - origin;
+        const Vec3 local = p + beside - origin;
         set.x[i] = static_cast<float>(local.x), set.y[i] = static_cast<float>(local.y),
         set.z[i] = static_cast<float>(local.z);
       }

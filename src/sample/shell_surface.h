@@ -30,14 +30,9 @@ ShellSurface shell_surface(const Shell& shell, const SiteVoxels& sites, Run& run
 /// |facing| from here on is clearly in front or behind.
 inline constexpr float clearly_facing = 0.5f;
 
-struct DrawOptions {
-  double most_shift =
-      1;            ///< voxels that a sample may lie beside its site: 1 where sites are dense, d where they are not
-  double rise = 0;  ///< voxels by which samples are left above the surface, towards the shell's border
-};
-
-/// Moves the samples of a shell's surface along the normals onto the surface in the middle of the shell.
-void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, const DrawOptions& options, Run& run);
+/// Moves the samples of a shell's surface along the normals onto the surface in the middle of the shell, to within a
+/// voxel of their sites.
+void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, Run& run);
 
 /// Normals of sites that have none: of the plane through the sites' points within `radius` voxels, both ways round
 /// (their sign means nothing). Cost: O(sites · radius³).
