@@ -1,0 +1,253 @@
+#include "pipeline/shell_sampling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "connect/surface_parts.h"
+#include "geometry/half_edges.h"
+#include "geometry/triangle.h"
+#include "pipeline/fineness.h"
+#include "sample/blocks.h"
+#include "sample/bridge_points.h"
+
+namespace evenmesh {
+namespace {
+
+constexpr double wanted_alpha = 100, least_alpha = 50;
+constexpr double samples_per_voxel_area = 1.5;  ///< Σ |n_a|, the mean over all directions
+constexpr unsigned default_thickness = 2, most_thickness = 20;
+
+double area_of(const Mesh& mesh) {
+  double area = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = corners_of(mesh, t);
+    area += triangle_area(a, b, c);
+  }
+  return area;
+}
+
+struct ShellPlan {
+  std::size_t vertices = 0, resolution = 0;
+  unsigned thickness = default_thickness;
+  double spacing = 0;   ///< of points
+  unsigned bridge = 0;  ///< voxels, half the width of the gaps between points that are closed
+};
+
+/// Area by triangles, points or a coarse sampling.
+double estimated_area(const Shape& shape, double spacing, Run& run) {
+  if (const Mesh* mesh = shape.mesh()) return area_of(*mesh);
+  if (const PointCloud* points = shape.points())
+    return 0.75 * static_cast<double>(points->points.size()) * spacing * spacing;
+  return scout_scale(shape, 0, run).area;
+}
+
+ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& report, Run& run) {
+  const PointCloud* points = shape.points();
+  const double spacing = points ? point_spacing(*points, run) : 0;
+  const double area = estimated_area(shape, spacing, run), longest = shape.bounds.longest_side();
+  if (!(area > 0) || !(longest > 0))
+    throw UnusableInput("the input has no area: all its triangles or points lie on a line or in a point");
+  ShellPlan plan;
+  double vertices = 0;
+  if (options.vertices) {
+    vertices = static_cast<double>(*options.vertices);
+  } else if (options.edge_length) {
+    vertices = vertices_of(area, *options.edge_length);
+  } else {
+    vertices = std::clamp(vertices_of(area, shape.bounds.diagonal() / 80), 200.0, 1e6);
+    report.notices.push_back(
+        {false, fmt::format("no -n or -l given: {:.0f} vertices, from area {:.4g}", vertices, area)});
+  }
+  plan.vertices = static_cast<std::size_t>(std::max(4.0, std::round(vertices)));
+  const double h = std::sqrt(samples_per_voxel_area * area / (wanted_alpha * static_cast<double>(plan.vertices)));
+  double resolution = std::clamp(std::ceil(longest / h), 32.0, 8192.0);
+  if (options.resolution) resolution = static_cast<double>(*options.resolution);
+  plan.thickness = options.thickness.value_or(default_thickness);
+  if (points) {
+    // Random points leave gaps of up to about three times their spacing.
+    const double voxels = 1.6 * spacing * resolution / longest;
+    if (!options.resolution && voxels > most_thickness) resolution = std::floor(resolution * most_thickness / voxels);
+    plan.spacing = spacing;
+    plan.bridge = options.thickness.value_or(static_cast<unsigned>(std::clamp(
+        std::ceil(1.6 * spacing * resolution / longest), double(default_thickness), double(most_thickness))));
+    plan.thickness = default_thickness;
+    report.notices.push_back(
+        {false, fmt::format("points about {:.3g} apart: gaps of up to {:.3g} ({} voxels) are bridged", spacing,
+                            2 * plan.bridge * longest / resolution, 2 * plan.bridge)});
+  }
+  plan.resolution = static_cast<std::size_t>(resolution);
+  return plan;
+}
+
+SiteVoxels voxelize(const Shape& shape, const ShellPlan& plan, Run& run) {
+  const VoxelGrid grid =
+      make_voxel_grid(shape.bounds, plan.resolution, std::max(plan.thickness, plan.bridge) + plan.thickness + 2);
+  if (const Mesh* mesh = shape.mesh()) return voxelize_mesh(*mesh, grid, run);
+  if (const PointCloud* points = shape.points()) {
+    SiteVoxels sparse = voxelize_points(points->points, points->normals, grid, run);
+    if (sparse.size() == 0) return sparse;
+    if (sparse.normal.empty()) estimate_normals(sparse, 2 * plan.bridge, run);
+    return bridge_points(sparse, build_shell(sparse, plan.bridge, run), plan.spacing, !points->normals.empty(), run);
+  }
+  return voxelize_field(*shape.field(), grid, shape.bounds, run);
+}
+
+}  // namespace
+
+bool is_open_surface(const Mesh& mesh) {
+  const HalfEdges edges(mesh.triangles, mesh.vertices.size());
+  Vec3 sum;
+  double area = 0;
+  std::size_t boundary = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = corners_of(mesh, t);
+    const Vec3 n = area_normal(a, b, c);
+    sum += n, area += norm(n);
+    for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) boundary += edges.opposite(h) == HalfEdges::none;
+  }
+  return static_cast<double>(boundary) > 0.01 * 3 * static_cast<double>(mesh.triangles.size()) ||
+         norm(sum) > 0.03 * area;
+}
+
+namespace {
+
+void report_sampling(const ShellPlan& plan, std::size_t samples, const SiteVoxels& sites, Report& report) {
+  report.seeds_asked = plan.vertices;
+  report.resolution = plan.resolution, report.thickness = plan.thickness;
+  report.spacing = sites.grid.side;
+  report.sites = sites.size(), report.samples = samples;
+}
+
+/// The sites around the outer border of a shell.
+SiteVoxels outer_border(const ShellSurface& surface, const Sheets& outer, const VoxelGrid& grid, Run& run) {
+  const SampleSet& samples = surface.samples;
+  std::vector<Vec3> points, normals;
+  for (const SampleBlock& block : samples.blocks)
+    for (std::uint32_t i = block.begin; i < block.end; ++i) {
+      if (!outer.chosen[i]) continue;
+      points.push_back(samples.block_center(block) + Vec3{samples.x[i], samples.y[i], samples.z[i]});
+      normals.push_back(unpack_normal(samples.normal[i]));
+    }
+  return voxelize_points(points, normals, grid, run);
+}
+
+/// The inner side of a shell, turned around: the border of what the shell encloses.
+SampleSet enclosed_by(const ShellSurface& surface, Run& run) {
+  SampleSet samples = surface.samples;
+  const SurfaceParts parts = surface_parts(samples, run);
+  std::vector<double> behind(parts.area.size(), 0);
+  for (std::uint32_t i = 0; i < samples.size(); ++i)
+    if (surface.facing[i] < 0) behind[parts.part[i]] += samples.area[i];
+  keep_samples(samples, [&](std::uint32_t i) { return behind[parts.part[i]] > 0.5 * parts.area[parts.part[i]]; });
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples.edge[i].bits ^= 1;
+    samples.normal[i] = pack_normal(-unpack_normal(samples.normal[i]));
+  }
+  return samples;
+}
+
+/// Samples, and once more on a finer grid where so little of the input counts that seeds would starve.
+template <typename Sample>
+void sample_well(ShellPlan plan, bool may_refine, const Sample& sample) {
+  const std::size_t samples = sample(plan);
+  const double wanted = wanted_alpha * static_cast<double>(plan.vertices);
+  if (!may_refine || static_cast<double>(samples) > 0.6 * wanted) return;
+  const double finer = std::min(3.0, std::sqrt(wanted / static_cast<double>(std::max<std::size_t>(1, samples))));
+  plan.resolution = std::min<std::size_t>(8192, static_cast<std::size_t>(finer * static_cast<double>(plan.resolution)));
+  if (plan.bridge > 0) plan.bridge = std::min(most_thickness, static_cast<unsigned>(std::ceil(finer * plan.bridge)));
+  sample(plan);
+}
+
+ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& stages, Report& report, Run& run) {
+  const SiteVoxels sites = stages.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, run); });
+  if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
+  ShellSampling sampling;
+  stages.stage("shell", 0.1, [&] {
+    const Shell shell = build_shell(sites, plan.thickness, run);
+    report.shell_voxels = shell.size();
+    sampling.surface = shell_surface(shell, sites, run);
+  });
+  stages.stage("sheets", 0.1, [&] {
+    // Cells on one sheet and not worth a triangle of their own; of points, what noise makes.
+    const double cell = 0.5 * sampling.surface.samples.total_area / static_cast<double>(plan.vertices);
+    const double least_area = (shape.points() ? 10 : 2) * cell;
+    sampling.sheets = choose_sheets(sampling.surface, sites, least_area, run);
+    const auto keep = [&](std::uint32_t i) { return sampling.sheets.chosen[i] != 0; };
+    sampling.samples = sampling.surface.samples;
+    keep_samples(sampling.samples, keep);
+    ShellSurface drawn = sampling.surface;
+    draw_onto_surface(drawn, sites, run);
+    sampling.on_surface = std::move(drawn.samples);
+    keep_samples(sampling.on_surface, keep);
+  });
+  if (sampling.samples.size() == 0)
+    throw UnusableInput("no piece of the surface is large enough for this fineness: ask for more vertices");
+  report_sampling(plan, sampling.samples.size(), sites, report);
+  report.sheets = sampling.sheets.sheets, report.cuts = sampling.sheets.cut;
+  report.dropped_components = sampling.sheets.dropped;
+  return sampling;
+}
+
+SampleSet sample_enclosed(const Shape& shape, const ShellPlan& plan, Stages& stages, Report& report, Run& run) {
+  const SiteVoxels sites = stages.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, run); });
+  if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
+  SampleSet samples = stages.stage("shell", 0.1, [&] {
+    const Shell shell = build_shell(sites, plan.thickness, run);
+    report.shell_voxels = shell.size();
+    const ShellSurface surface = shell_surface(shell, sites, run);
+    const SiteVoxels border = outer_border(surface, outer_sheets(surface, run), sites.grid, run);
+    return enclosed_by(shell_surface(build_shell(border, plan.thickness - 1, run), border, run), run);
+  });
+  if (samples.size() == 0) throw UnusableInput("the surface is too small for its grid: raise the resolution");
+  report_sampling(plan, samples.size(), sites, report);
+  return samples;
+}
+
+/// Fewer seeds when the samples cannot feed as many.
+void limit_seeds(Report& report) {
+  const double most = std::max(4.0, std::floor(static_cast<double>(report.samples) / least_alpha));
+  if (static_cast<double>(report.seeds_asked) <= most) return;
+  report.notices.push_back(
+      {false, fmt::format("{} vertices would have fewer than {} samples each at resolution {}; meshing with {:.0f}",
+                          report.seeds_asked, least_alpha, report.resolution, most)});
+  report.seeds_asked = static_cast<std::size_t>(most);
+}
+
+}  // namespace
+
+ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report,
+                              Run& run) {
+  const ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
+  ShellSampling sampling;
+  sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
+    sampling = {};  // frees the memory first
+    sampling = sample_sheets(shape, p, stages, report, run);
+    return sampling.samples.size();
+  });
+  limit_seeds(report);
+  if (sampling.sheets.cut > 0)
+    report.notices.push_back(
+        {false, fmt::format("{} sheets of surface end where others meet or cross them", sampling.sheets.cut)});
+  return sampling;
+}
+
+SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report, Run& run) {
+  ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
+  plan.thickness = std::max(plan.thickness, 2u);
+  if (plan.bridge > 0) plan.bridge = std::max(plan.bridge, plan.thickness);
+  SampleSet samples;
+  sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
+    samples = {};
+    samples = sample_enclosed(shape, p, stages, report, run);
+    return samples.size();
+  });
+  limit_seeds(report);
+  report.notices.push_back({false, fmt::format("the wrap lies about {:.3g} outside of the surface, and closes what is "
+                                               "narrower than {:.3g}",
+                                               report.spacing, 2 * plan.thickness * report.spacing)});
+  return samples;
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,30 @@
+#pragma once
+/// The shell method between shape and samples: voxels, shell, sheets.
+
+#include "connect/sheets.h"
+#include "evenmesh/mesh_shape.h"
+#include "pipeline/stages.h"
+
+namespace evenmesh {
+
+/// The surface as the shell method samples it.
+struct ShellSampling {
+  ShellSurface surface;  ///< both sides of the shell
+  Sheets sheets;
+  SampleSet samples;     ///< the chosen side, in the order of `surface`
+  SampleSet on_surface;  ///< the same, drawn onto the surface in the middle of the shell
+};
+
+/// Whether a triangle mesh is far from bounding a solid: its boundary is more than 1 % of its edges, or its area
+/// vectors do not cancel out.
+bool is_open_surface(const Mesh& mesh);
+
+/// Chooses resolution and thickness, samples, and fills in the report's counts: asked seeds, samples, sites, shell.
+/// @throws UnusableInput  nothing of the surface lies within the bounds
+ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report, Run& run);
+
+/// The same for the solid that wraps the surface: what the outside cannot reach, eroded back by the thickness to one
+/// voxel above the surface (a morphological closing). Closed, whatever the input is; its samples bound a solid.
+SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report, Run& run);
+
+}  // namespace evenmesh
