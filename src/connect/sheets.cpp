@@ -13,11 +13,8 @@ using Index = std::uint32_t;
 constexpr Index none = 0xffffffffu;
 constexpr double both_sides = 0.02;  ///< share of a part's sites seen from both sides that calls for a cut
 constexpr double new_sheet = 0.3;    ///< share of a sheet's area over uncovered sites that makes it worth taking
+constexpr std::size_t stride = 7;    ///< every so many sites or samples are asked which sides see them
 constexpr double surrounded = 0.98;  ///< share of a rim's neighbours that must be chosen for it to follow
-
-Index side_of(float facing) {
-  return facing > 0 ? 0 : 1;
-}
 
 /// A connected set of samples that face the same way, or of those around a rim.
 struct Sheet {
@@ -51,7 +48,6 @@ class Chooser {
       for_each_voxel(tile, [&](unsigned x, unsigned y, unsigned z) {
         const Voxel c = tile.corner();
         voxel_.push_back({c[0] + std::int32_t(x), c[1] + std::int32_t(y), c[2] + std::int32_t(z)});
-        group_.push_back(static_cast<Index>(64 * (&tile - &sites.tiles[0]) + 16 * (z / 2) + 4 * (y / 2) + x / 2));
       });
   }
 
@@ -72,21 +68,50 @@ class Chooser {
   void find_parts() {
     part_ = part_roots(samples_, bricks_, run_, [](Index, Index) { return true; });
     const std::size_t parts = number_sets(part_);
-    // By groups of 2³ voxels: a slanted surface has two layers of sites, and each side sees its own.
-    std::vector<Index> seen_by[2];
-    for (auto& list : seen_by) list.assign(64 * sites_.tiles.size(), none);
-    for (Index s = 0; s < part_.size(); ++s)
-      if (is_clear(s)) seen_by[side_of(surface_.facing[s])][group_[surface_.site[s]]] = part_[s];
+    // A sample for each of the sides that see a site; the sign of the site's own normal may mean nothing.
+    for (auto& list : seen_) list.assign(sites_.size(), none);
+    for (Index s = 0; s < part_.size(); ++s) {
+      if (!is_clear(s)) continue;
+      const Index site = surface_.site[s];
+      if (seen_[0][site] == none)
+        seen_[0][site] = s;
+      else if (seen_[1][site] == none && opposed(s, seen_[0][site]))
+        seen_[1][site] = s;
+    }
     std::vector<std::size_t> sites(parts, 0), twice(parts, 0);
-    for (std::size_t g = 0; g < seen_by[0].size(); ++g) {
-      const Index front = seen_by[0][g], back = seen_by[1][g];
-      if (front != none) ++sites[front];
-      if (back != none && back != front) ++sites[back];
-      if (front != none && front == back) ++twice[front];
+    for (std::size_t site = 0; site < sites_.size(); site += stride) {
+      const Index s = seen_[0][site];
+      if (s == none) continue;
+      ++sites[part_[s]];
+      twice[part_[s]] += is_seen_across(s, part_);
     }
     needs_cut_.assign(parts, 0);
     for (std::size_t p = 0; p < parts; ++p)
       needs_cut_[p] = static_cast<double>(twice[p]) > both_sides * static_cast<double>(sites[p]);
+  }
+
+  /// Whether a condition holds for a site or one beside it: a slanted surface has two layers of sites, and each side
+  /// sees its own.
+  template <typename Condition>
+  bool any_near(const Voxel& v, const Condition& condition) const {
+    for (std::int32_t z = -1; z <= 1; ++z)
+      for (std::int32_t y = -1; y <= 1; ++y)
+        for (std::int32_t x = -1; x <= 1; ++x)
+          if (const auto site = sites_.tiles.number({v[0] + x, v[1] + y, v[2] + z}); site && condition(*site))
+            return true;
+    return false;
+  }
+
+  bool opposed(Index s, Index t) const {
+    return dot(unpack_normal(samples_.normal[s]), unpack_normal(samples_.normal[t])) < -0.5;
+  }
+  /// Whether the same set also sees the sample's site from the other side.
+  bool is_seen_across(Index s, const std::vector<Index>& set) const {
+    return any_near(voxel_[surface_.site[s]], [&](std::uint64_t site) {
+      for (const auto& seen : seen_)
+        if (const Index t = seen[site]; t != none && set[t] == set[s] && opposed(s, t)) return true;
+      return false;
+    });
   }
 
   bool same_sheet(Index a, Index b) const {
@@ -148,8 +173,8 @@ class Chooser {
     return {members_.data() + first_[sheet.id], first_[sheet.id + 1] - first_[sheet.id]};
   }
 
-  /// Takes what lies over sites that are not covered. A sheet that sees sites from both sides, like that of a Möbius
-  /// strip, is taken in front only.
+  /// Takes what lies over sites that are not covered. Of a sheet that sees sites from both sides, like that of a Möbius
+  /// strip, one side is taken.
   void take(const Sheet& sheet) {
     const auto list = members(sheet);
     double fresh = 0;
@@ -164,35 +189,52 @@ class Chooser {
     const bool one_sided = is_one_sided(list);
     ++result_.sheets;
     result_.cut += !whole || one_sided;
-    std::vector<Index> taken;
-    for (const Index s : list) {
-      if (!whole && covered_[surface_.site[s]]) continue;
-      if (one_sided && surface_.facing[s] < 0) continue;
-      result_.chosen[s] = 1, taken.push_back(s);
-    }
+    std::vector<Index> taken = one_sided ? one_side_of(list) : std::vector<Index>(list.begin(), list.end());
+    if (!whole) std::erase_if(taken, [&](Index s) { return covered_[surface_.site[s]] != 0; });
+    for (const Index s : taken) result_.chosen[s] = 1;
     for (const Index s : taken) cover(surface_.site[s]);
   }
   /// The site's neighbours too: those in a second layer, and those in the depth of a crease, are never seen themselves.
   void cover(Index site) {
     if (covered_[site] == 2) return;
     covered_[site] = 2;
-    const Voxel& v = voxel_[site];
-    for (std::int32_t z = -1; z <= 1; ++z)
-      for (std::int32_t y = -1; y <= 1; ++y)
-        for (std::int32_t x = -1; x <= 1; ++x)
-          if (const auto n = sites_.tiles.number({v[0] + x, v[1] + y, v[2] + z}); n && covered_[*n] == 0)
-            covered_[*n] = 1;
+    any_near(voxel_[site], [&](std::uint64_t n) {
+      if (covered_[n] == 0) covered_[n] = 1;
+      return false;
+    });
   }
   bool is_one_sided(std::span<const Index> list) const {
     if (!needs_cut_[part_[list.front()]]) return false;
-    std::size_t both = 0;
-    std::vector<Index> sites;
+    std::size_t both = 0, tried = 0;
+    for (std::size_t i = 0; i < list.size(); i += stride) ++tried, both += is_seen_across(list[i], sheet_);
+    return both > tried / 10;
+  }
+  /// Of a one-sided sheet, what lies on one side when that side is carried on from site to site.
+  std::vector<Index> one_side_of(std::span<const Index> list) const {
+    std::vector<Vec3> up(sites_.size());  // zero: not reached yet
+    std::vector<char> in_sheet(sites_.size(), 0);
+    for (const Index s : list) in_sheet[surface_.site[s]] = 1;
+    std::vector<Index> queue;
+    const auto reach = [&](Index site, const Vec3& along) {
+      const Vec3 n = unpack_normal(sites_.normal[site]);
+      up[site] = dot(n, along) < 0 ? -n : n;
+      queue.push_back(site);
+    };
+    for (const Index first : list) {
+      if (up[surface_.site[first]] != Vec3{}) continue;
+      reach(surface_.site[first], unpack_normal(samples_.normal[first]));
+      for (std::size_t at = queue.size() - 1; at < queue.size(); ++at) {
+        const Index site = queue[at];
+        any_near(voxel_[site], [&](std::uint64_t n) {
+          if (in_sheet[n] && up[n] == Vec3{}) reach(static_cast<Index>(n), up[site]);
+          return false;
+        });
+      }
+    }
+    std::vector<Index> side;
     for (const Index s : list)
-      if (surface_.facing[s] > 0) sites.push_back(surface_.site[s]);
-    std::sort(sites.begin(), sites.end());
-    for (const Index s : list)
-      both += surface_.facing[s] < 0 && std::binary_search(sites.begin(), sites.end(), surface_.site[s]);
-    return both > list.size() / 10;
+      if (dot(up[surface_.site[s]], unpack_normal(samples_.normal[s])) > 0) side.push_back(s);
+    return side;
   }
 
   /// What looked like a rim, but has chosen samples all around, was a sharp crease. Then the border is marked.
@@ -232,9 +274,9 @@ class Chooser {
   double least_area_;
   Run& run_;
   std::vector<CubeBrick> bricks_;
-  std::vector<char> covered_;  ///< by site: 1 beside what is covered, 2 covered itself
-  std::vector<Voxel> voxel_;   ///< by site
-  std::vector<Index> group_;   ///< by site: of 2³ voxels
+  std::vector<char> covered_;   ///< by site: 1 beside what is covered, 2 covered itself
+  std::vector<Voxel> voxel_;    ///< by site
+  std::vector<Index> seen_[2];  ///< by site: samples that see it from opposite sides
   std::vector<Index> part_, sheet_, first_, members_;
   std::vector<char> needs_cut_;  ///< by part
   std::vector<Sheet> sheets_;
