@@ -250,7 +250,7 @@ class Chooser {
 
   /// What looked like a rim, but has chosen samples all around, was a sharp crease. Then the border is marked.
   void close_rims() {
-    if (std::find(result_.chosen.begin(), result_.chosen.end(), 0) == result_.chosen.end()) return;
+    if (result_.cut == 0 && std::find(needs_cut_.begin(), needs_cut_.end(), 1) == needs_cut_.end()) return;
     std::vector<std::size_t> around(sheets_.size(), 0), chosen(sheets_.size(), 0);
     for_links([&](Index s, Index t) {
       if (is_rim(s) && !is_rim(t)) ++around[sheet_[s]], chosen[sheet_[s]] += result_.chosen[t] != 0;

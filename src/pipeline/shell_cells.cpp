@@ -48,13 +48,9 @@ class ShellCells {
     stages_.stage("connect", 0.1, [&] {
       evaluator_.nearest(seeds_, labels_);
       std::vector<std::uint32_t> all(sampling_.surface.samples.size(), no_label);
-      std::size_t at = 0;
-      for (std::size_t i = 0; i < all.size(); ++i)
-        if (sampling_.sheets.chosen[i]) all[i] = labels_[at++];
+      for (std::size_t i = 0; i < labels_.size(); ++i) all[sampling_.in_surface[i]] = labels_[i];
       complex_ = connect_labels(sampling_.surface.samples, all, seeds_, run_);
-      at = 0;
-      for (std::size_t i = 0; i < all.size(); ++i)
-        if (sampling_.sheets.chosen[i]) labels_[at++] = all[i];
+      for (std::size_t i = 0; i < labels_.size(); ++i) labels_[i] = all[sampling_.in_surface[i]];
       for (const CellPiece& piece : complex_.pieces) seeds_.push_back(piece.centroid);
     });
   }
@@ -95,14 +91,11 @@ class ShellCells {
     };
     std::vector<Rim> rims(seeds_.size());
     const auto each = [&](const auto& use) {
-      std::size_t full = 0;
       const SampleSet& set = sampling_.on_surface;
       for (const SampleBlock& block : set.blocks)
-        for (std::uint32_t i = block.begin; i < block.end; ++i, ++full) {
-          while (!sampling_.sheets.chosen[full]) ++full;
-          if (sampling_.sheets.border[full])
+        for (std::uint32_t i = block.begin; i < block.end; ++i)
+          if (sampling_.sheets.border[sampling_.in_surface[i]])
             use(rims[labels_[i]], set.block_center(block) + Vec3{set.x[i], set.y[i], set.z[i]});
-        }
     };
     each([](Rim& rim, const Vec3& p) { rim.sum += p, rim.count += 1; });
     each([](Rim& rim, const Vec3& p) {

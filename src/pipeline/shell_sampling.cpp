@@ -174,13 +174,11 @@ ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& s
     const double cell = 0.5 * sampling.surface.samples.total_area / static_cast<double>(plan.vertices);
     const double least_area = (shape.points() ? 10 : 2) * cell;
     sampling.sheets = choose_sheets(sampling.surface, sites, least_area, run);
-    const auto keep = [&](std::uint32_t i) { return sampling.sheets.chosen[i] != 0; };
+    for (std::uint32_t i = 0; i < sampling.sheets.chosen.size(); ++i)
+      if (sampling.sheets.chosen[i]) sampling.in_surface.push_back(i);
     sampling.samples = sampling.surface.samples;
-    keep_samples(sampling.samples, keep);
-    ShellSurface drawn = sampling.surface;
-    draw_onto_surface(drawn, sites, run);
-    sampling.on_surface = std::move(drawn.samples);
-    keep_samples(sampling.on_surface, keep);
+    keep_samples(sampling.samples, [&](std::uint32_t i) { return sampling.sheets.chosen[i] != 0; });
+    sampling.on_surface = drawn_onto_surface(sampling.samples, sampling.in_surface, sampling.surface, sites, run);
   });
   if (sampling.samples.size() == 0)
     throw UnusableInput("no piece of the surface is large enough for this fineness: ask for more vertices");

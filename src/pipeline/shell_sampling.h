@@ -11,8 +11,9 @@ namespace evenmesh {
 struct ShellSampling {
   ShellSurface surface;  ///< both sides of the shell
   Sheets sheets;
-  SampleSet samples;     ///< the chosen side, in the order of `surface`
-  SampleSet on_surface;  ///< the same, drawn onto the surface in the middle of the shell
+  SampleSet samples;                      ///< the chosen side, in the order of `surface`
+  std::vector<std::uint32_t> in_surface;  ///< index of each of `samples` in surface.samples
+  SampleSet on_surface;                   ///< the same, drawn onto the surface in the middle of the shell
 };
 
 /// Whether a triangle mesh is far from bounding a solid: its boundary is more than 1 % of its edges, or its area

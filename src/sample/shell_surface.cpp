@@ -160,8 +160,8 @@ ShellSurface shell_surface(const Shell& shell, const SiteVoxels& sites, Run& run
   });
 }
 
-void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, Run& run) {
-  SampleSet& set = surface.samples;
+SampleSet drawn_onto_surface(SampleSet set, std::span<const std::uint32_t> index, const ShellSurface& surface,
+                             const SiteVoxels& sites, Run& run) {
   const double h = sites.grid.side;
   std::vector<Vec3> center(sites.size());
   for (const VoxelTile& tile : sites.tiles) {
@@ -175,10 +175,10 @@ void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, Run& run)
     for (std::size_t b = begin; b < end; ++b) {
       const Vec3 origin = set.block_center(set.blocks[b]);
       for (std::uint32_t i = set.blocks[b].begin; i < set.blocks[b].end; ++i) {
-        const std::uint32_t s = surface.site[i];
+        const std::uint32_t s = surface.site[index[i]];
         const Vec3 p = center[s] + Vec3{sites.x[s], sites.y[s], sites.z[s]}, n = unpack_normal(set.normal[i]);
         Vec3 beside;
-        if (std::abs(surface.facing[i]) >= clearly_facing) {
+        if (std::abs(surface.facing[index[i]]) >= clearly_facing) {
           beside = origin + Vec3{set.x[i], set.y[i], set.z[i]} - p;
           beside -= dot(beside, n) * n;
           const double length = norm(beside);
@@ -190,6 +190,7 @@ void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, Run& run)
       }
     }
   });
+  return set;
 }
 
 void estimate_normals(SiteVoxels& sites, unsigned radius, Run& run) {

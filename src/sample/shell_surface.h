@@ -2,6 +2,7 @@
 /// The two sides of a shell, drawn onto the surface in its middle.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sample/sample_set.h"
@@ -31,9 +32,12 @@ ShellSurface shell_surface(const Shell& shell, const SiteVoxels& sites, Run& run
 /// |facing| from here on is clearly in front or behind.
 inline constexpr float clearly_facing = 0.5f;
 
-/// Moves the samples of a shell's surface along the normals onto the surface in the middle of the shell, to within a
+/// Some samples of a shell's surface, moved along the normals onto the surface in the middle of the shell, to within a
 /// voxel of their sites.
-void draw_onto_surface(ShellSurface& surface, const SiteVoxels& sites, Run& run);
+/// @param samples  a subset of surface.samples
+/// @param index    where each of them is in surface.samples
+SampleSet drawn_onto_surface(SampleSet samples, std::span<const std::uint32_t> index, const ShellSurface& surface,
+                             const SiteVoxels& sites, Run& run);
 
 /// Normals of sites that have none: of the plane through the sites' points within `radius` voxels, both ways round
 /// (their sign means nothing). Cost: O(sites · radius³).
