@@ -103,7 +103,6 @@ bool is_open_surface(const Mesh& mesh) {
   Vec3 sum;
   double area = 0;
   std::size_t boundary = 0;
-  std::vector<std::uint32_t> used(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto [a, b, c] = corners_of(mesh, t);
     const Vec3 n = area_normal(a, b, c);
