@@ -195,16 +195,20 @@ class Chooser {
   }
   bool is_one_sided(std::span<const Index> list) {
     if (!needs_cut_[part_[list.front()]]) return false;
-    std::size_t front = 0, both = 0;
-    std::vector<Index> sites;
+    // By groups of 2³ voxels, as in find_parts(). Normals of points may point either way: those of the samples count.
+    std::size_t both = 0;
+    std::vector<std::pair<Index, Index>> in_front;  // group, sample
     for (const Index s : list)
-      if (surface_.facing[s] > 0) sites.push_back(surface_.site[s]);
-    std::sort(sites.begin(), sites.end());
+      if (surface_.facing[s] > 0) in_front.push_back({group_[surface_.site[s]], s});
+    std::sort(in_front.begin(), in_front.end());
     for (const Index s : list) {
-      front += surface_.facing[s] > 0;
-      both += surface_.facing[s] < 0 && std::binary_search(sites.begin(), sites.end(), surface_.site[s]);
+      if (surface_.facing[s] > 0) continue;
+      const Index group = group_[surface_.site[s]];
+      const auto at = std::lower_bound(in_front.begin(), in_front.end(), std::pair{group, Index{0}});
+      both += at != in_front.end() && at->first == group &&
+              dot(unpack_normal(samples_.normal[s]), unpack_normal(samples_.normal[at->second])) < -0.5;
     }
-    return front > 0 && both > list.size() / 10;
+    return both > list.size() / 10;
   }
 
   /// What looked like a rim, but has chosen samples all around, was a sharp crease.
