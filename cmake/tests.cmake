@@ -20,6 +20,10 @@ foreach(room ${EVENMESH_ROOMS})
   evenmesh_test(${room} evenmesh_${room})
 endforeach()
 
+if(TARGET test_pipeline)
+  target_link_libraries(test_pipeline PRIVATE evenmesh_io)  # models are files
+endif()
+
 # The house: who includes whom, examples that compile.
 evenmesh_test(house)
 # The program, driven from outside.

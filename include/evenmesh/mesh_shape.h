@@ -90,7 +90,6 @@ struct MeshResult {
 /// threads. Cost: two cores take about 0.1 ms and 7 kB per vertex.
 /// @throws InvalidInput   options out of range
 /// @throws UnusableInput  no surface within the bounds
-/// @throws NotAvailable   the shape is a point cloud
 /// @throws Cancelled      through `run`
 /// Based on Martínez, Claux, Lefebvre, Raster2Mesh, Inria RR-8684, 2015, and, for the shell, on Leung, Wang, He, Liu,
 /// Wang, A unified framework for isotropic meshing based on narrow-banded Euclidean distance transformation,

@@ -24,6 +24,11 @@ std::string report_json(const Report& r) {
   json["evaluations"] = r.evaluations;
   json["disagreements"] = r.disagreements;
   json["dropped_components"] = r.dropped_components;
+  json["sites"] = r.sites;
+  json["shell_voxels"] = r.shell_voxels;
+  json["thickness"] = r.thickness;
+  json["sheets"] = r.sheets;
+  json["cuts"] = r.cuts;
   json["inserted_seeds"] = r.inserted_seeds;
   json["regularization_rounds"] = r.regularization_rounds;
   json["seconds"] = nlohmann::ordered_json::object();

@@ -28,6 +28,16 @@ double area_of(const Mesh& mesh) {
   return area;
 }
 
+/// Up to the rounding of single precision.
+bool on_a_line(const std::vector<Vec3>& points) {
+  Vec3 along;
+  for (const Vec3& p : points)
+    if (squared_norm(p - points[0]) > squared_norm(along)) along = p - points[0];
+  const double length = norm(along);
+  return std::all_of(points.begin(), points.end(),
+                     [&](const Vec3& p) { return norm(cross(p - points[0], along)) <= 1e-6 * length * length; });
+}
+
 struct ShellPlan {
   std::size_t vertices = 0, resolution = 0;
   unsigned thickness = default_thickness;
@@ -47,7 +57,7 @@ ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& rep
   const PointCloud* points = shape.points();
   const double spacing = points ? point_spacing(*points, run) : 0;
   const double area = estimated_area(shape, spacing, run), longest = shape.bounds.longest_side();
-  if (!(area > 0) || !(longest > 0))
+  if (!(area > 0) || !(longest > 0) || (points && on_a_line(points->points)))
     throw UnusableInput("the input has no area: all its triangles or points lie on a line or in a point");
   ShellPlan plan;
   double vertices = 0;

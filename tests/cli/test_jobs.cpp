@@ -1,5 +1,6 @@
 /// What the program does when it works: files, streams, reports, interruption.
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "program.h"
@@ -168,15 +169,53 @@ TEST_F(Jobs, InfoOnPoints) {
   const Outcome table = run({"info", "-"}, {.input = "0 0 0\n3 4 0\n"});
   EXPECT_EQ(table.status, 0) << table.err;
   EXPECT_TRUE(table.out.starts_with("standard input\n  points ")) << table.out;
-  const Outcome meshed = run({"mesh", "three.pts", "-n", "100", "-o", "x.ply"});
-  EXPECT_EQ(meshed.status, 2);
-  EXPECT_EQ(meshed.err, "error: meshing point clouds is not available in this version\n");
   for (const Words& words : {Words{"compare", "two.ply", "two.ply"}, Words{"render", "two.ply", "-o", "x.png"}}) {
     const Outcome outcome = run(words);
     EXPECT_EQ(outcome.status, 3);
     EXPECT_NE(outcome.err.find("two.ply: holds no triangles, only 2 points"), std::string::npos) << outcome.err;
   }
   EXPECT_EQ(names(), (Words{"three.pts", "two.ply"}));
+}
+
+TEST_F(Jobs, MeshesPoints) {
+  std::string points;  // evenly on a ball, by the golden angle
+  for (int i = 0; i < 2000; ++i) {
+    const double z = 1 - (i + 0.5) / 1000, ring = std::sqrt(1 - z * z), angle = 2.399963 * i;
+    points += std::to_string(ring * std::cos(angle)) + ' ' + std::to_string(ring * std::sin(angle)) + ' ' +
+              std::to_string(z) + '\n';
+  }
+  write("ball.xyz", points);
+  const Outcome outcome = run({"mesh", "ball.xyz", "-n", "200", "-o", "ball.ply", "--json", "ball.json", "-q"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const Json figures = Json::parse(read("ball.json"));
+  EXPECT_EQ(figures.at("euler"), 2);
+  EXPECT_EQ(figures.at("closed"), true);
+  for (const char* key : {"sites", "shell_voxels", "thickness", "sheets", "cuts"})
+    EXPECT_TRUE(figures.contains(key)) << key;
+}
+
+TEST_F(Jobs, PointsOfALineHaveNoSurfaceIsStatus3) {
+  write("line.xyz", "0 0 0\n1 1 1\n2 2 2\n3 3 3\n4 4 4\n");
+  write("equal.xyz", "1 2 3\n1 2 3\n1 2 3\n");
+  for (const char* name : {"line.xyz", "equal.xyz"}) {
+    const Outcome outcome = run({"mesh", name, "-n", "100", "-o", "x.ply"});
+    EXPECT_EQ(outcome.status, 3) << name << ": " << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with("error: ")) << outcome.err;
+  }
+  EXPECT_EQ(names(), (Words{"equal.xyz", "line.xyz"}));
+}
+
+TEST_F(Jobs, MeshesOpenSheets) {
+  write("corner.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n");
+  const Outcome outcome = run({"mesh", "corner.obj", "-n", "200", "-o", "corner.ply", "--json", "corner.json", "-q"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const Json figures = Json::parse(read("corner.json"));
+  EXPECT_EQ(figures.at("closed"), false);
+  EXPECT_EQ(figures.at("euler"), 1);
+  const Words shell{"mesh",     "gallery:sphere", "-n",          "200", "-o", "s.ply",
+                    "--method", "shell",          "--thickness", "3",   "-q"};
+  EXPECT_EQ(run(shell).status, 0);
+  EXPECT_EQ(Json::parse(info("s.ply")).at("euler"), 2);
 }
 
 TEST_F(Jobs, ListsTheGallery) {

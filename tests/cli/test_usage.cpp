@@ -92,6 +92,8 @@ TEST_F(Usage, WrongUsageIsStatus2) {
       {{"mesh", in, "-o", "x.ply", "--tolerance", "1"}, "--tolerance"},
       {{"mesh", in, "-o", "x.ply", "--iterations", "10001"}, "--iterations"},
       {{"mesh", in, "-o", "x.ply", "--quality", "best"}, "fast, normal, high"},
+      {{"mesh", in, "-o", "x.ply", "--method", "shells"}, "auto, raster, shell"},
+      {{"mesh", in, "-o", "x.ply", "--thickness", "21"}, "between 1 and 20"},
       {{"mesh", in, "-o", "x.ply", "--start", "cold"}, "--start"},
       {{"mesh", in, "-o", "x.ply", "--seed", "-1"}, "--seed"},
       {{"mesh", in, "-o", "x.ply", "--bounds", "0,0,0,1,1"}, "6 numbers"},
@@ -127,18 +129,16 @@ TEST_F(Usage, WrongUsageIsStatus2) {
 
 TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
   write("a.obj", tetrahedron_obj);
-  for (const char* name :
-       {"s.glsl", "s.frag", "s.json", "s.vdb", "s.nii", "s.nii.gz", "s.nrrd", "s.tdx", "s.XYZ", "s.ply"}) {
-    write(name, std::string(name) == "s.ply" ? points_ply : "1 2 3\n");
+  for (const char* name : {"s.glsl", "s.frag", "s.json", "s.vdb", "s.nii", "s.nii.gz", "s.nrrd", "s.tdx"}) {
+    write(name, "1 2 3\n");
     const Outcome outcome = run({"mesh", name, "-o", "x.ply"});
     EXPECT_EQ(outcome.status, 2) << name;
     expect_one_sentence(outcome, "not available in this version");
   }
   const std::vector<Words> options{
-      {"--method", "shell"},      {"--connect", "fragments"}, {"--connect", "flood"},     {"--topology", "simplify"},
-      {"--features", "auto"},     {"--features", "40"},       {"--density", "curvature"}, {"--density", "1+x"},
-      {"--backend", "gl"},        {"--error", "0.001"},       {"--thickness", "2"},       {"--max-cycle", "5"},
-      {"--dump-dexels", "a.tdx"}, {"--entry", "map"},
+      {"--connect", "fragments"}, {"--connect", "flood"},     {"--topology", "simplify"}, {"--features", "auto"},
+      {"--features", "40"},       {"--density", "curvature"}, {"--density", "1+x"},       {"--backend", "gl"},
+      {"--error", "0.001"},       {"--max-cycle", "5"},       {"--dump-dexels", "a.tdx"}, {"--entry", "map"},
   };
   for (const Words& option : options) {
     SCOPED_TRACE(testing::PrintToString(option));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "geometry/primitives.h"
 
 namespace evenmesh {
@@ -79,6 +81,85 @@ TEST(HalfEdges, BodiesThatShareAVertexAreTwoFans) {
   EXPECT_EQ(edges.fans(0), 2u);
   EXPECT_EQ(edges.fans(1), 1u);
   EXPECT_EQ(edges.corners(0), 6u);
+}
+
+/// The triangles around a vertex as visit_fans() lists them: third corners, fan by fan.
+std::vector<std::vector<std::uint32_t>> fans_at(const std::vector<Triangle>& triangles, std::size_t vertices,
+                                                std::uint32_t v) {
+  const HalfEdges edges(triangles, vertices);
+  std::vector<std::vector<std::uint32_t>> list;
+  edges.visit_fans(v, [&](std::uint32_t h, std::uint32_t fan) {
+    EXPECT_EQ(start(triangles, h), v);
+    EXPECT_LE(fan, list.size());
+    list.resize(std::max<std::size_t>(list.size(), fan + 1));
+    if (!list[fan].empty()) {  // one triangle after the other, each across an edge of the last
+      const std::uint32_t last = list[fan].back();
+      EXPECT_EQ(edges.opposite(HalfEdges::previous(last)), h);
+    }
+    list[fan].push_back(h);
+  });
+  EXPECT_EQ(edges.fans(v), list.size());
+  return list;
+}
+
+TEST(HalfEdges, AClosedFanIsVisitedOnceAround) {
+  const Mesh mesh = make_icosphere(1);
+  const HalfEdges edges(mesh.triangles, mesh.vertices.size());
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    const auto fans = fans_at(mesh.triangles, mesh.vertices.size(), v);
+    ASSERT_EQ(fans.size(), 1u);
+    EXPECT_EQ(fans[0].size(), edges.corners(v));
+    EXPECT_EQ(edges.opposite(HalfEdges::previous(fans[0].back())), fans[0].front());
+  }
+}
+
+TEST(HalfEdges, AnOpenFanIsOneWhereverItIsStored) {
+  std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}};
+  std::sort(triangles.begin(), triangles.end());
+  do {
+    const HalfEdges edges(triangles, 6);
+    const auto fans = fans_at(triangles, 6, 0);
+    ASSERT_EQ(fans.size(), 1u);
+    ASSERT_EQ(fans[0].size(), 4u);
+    EXPECT_EQ(edges.opposite(fans[0].front()), HalfEdges::none) << "it begins on the boundary";
+    EXPECT_EQ(edges.opposite(HalfEdges::previous(fans[0].back())), HalfEdges::none) << "and ends there";
+  } while (std::next_permutation(triangles.begin(), triangles.end()));
+}
+
+TEST(HalfEdges, EveryVertexOfADiscIsOneFan) {
+  const Mesh plane = make_grid_plane(3, 3);
+  std::size_t corners = 0;
+  for (std::uint32_t v = 0; v < plane.vertices.size(); ++v) {
+    const auto fans = fans_at(plane.triangles, plane.vertices.size(), v);
+    ASSERT_EQ(fans.size(), 1u);
+    corners += fans[0].size();
+  }
+  EXPECT_EQ(corners, 3 * plane.triangles.size());
+}
+
+TEST(HalfEdges, ABowtieIsTwoFans) {
+  const std::vector<Triangle> bowtie{{0, 1, 2}, {4, 0, 3}, {2, 3, 0}, {5, 6, 0}};
+  const auto fans = fans_at(bowtie, 7, 0);
+  ASSERT_EQ(fans.size(), 2u);
+  EXPECT_EQ(fans[0].size() + fans[1].size(), 4u);
+  EXPECT_EQ(std::min(fans[0].size(), fans[1].size()), 1u);
+  EXPECT_EQ(fans_at(bowtie, 7, 2).size(), 1u);
+}
+
+TEST(HalfEdges, AClosedAndAnOpenFanMayMeet) {
+  Mesh mesh = make_tetrahedron();
+  const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.triangles.push_back({0, n, n + 1});
+  const auto fans = fans_at(mesh.triangles, n + 2, 0);
+  ASSERT_EQ(fans.size(), 2u);
+  EXPECT_EQ(fans[0].size(), 3u);
+  EXPECT_EQ(fans[1].size(), 1u);
+}
+
+TEST(HalfEdges, TrianglesAtAnEdgeOfThreeAreFansOfTheirOwn) {
+  const std::vector<Triangle> fin{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
+  EXPECT_EQ(fans_at(fin, 5, 0).size(), 3u);
+  EXPECT_EQ(fans_at(fin, 5, 2).size(), 1u);
 }
 
 }  // namespace

@@ -18,6 +18,8 @@ TEST(MeshOptions, OutOfRangeIsRefused) {
       {.edge_length = infinity},
       {.vertices = 100, .resolution = 7},
       {.vertices = 100, .resolution = 8193},
+      {.vertices = 100, .thickness = 0},
+      {.vertices = 100, .thickness = 21},
       {.vertices = 100, .bounds = Box{}},
       {.vertices = 100, .bounds = Box{{0, 0, 0}, {nan, 1, 1}}},
       {.vertices = 100, .bounds = Box{{0, 0, 0}, {infinity, 1, 1}}},
@@ -30,10 +32,10 @@ TEST(MeshOptions, OutOfRangeIsRefused) {
   for (std::size_t i = 0; i < std::size(wrong); ++i) EXPECT_THROW(meshed(ball, wrong[i]), InvalidInput) << "case " << i;
 }
 
-TEST(MeshOptions, PointCloudsAreNotMeshedYet) {
-  const Shape points = shape_from_points({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}});
-  EXPECT_THROW(meshed(points, {.vertices = 100}), NotAvailable);
-  EXPECT_THROW(meshed(points, {.vertices = 3}), InvalidInput) << "options are looked at first";
+TEST(MeshOptions, AreLookedAtBeforeTheShape) {
+  const Shape line = shape_from_points({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {}});
+  EXPECT_THROW(meshed(line, {.vertices = 3}), InvalidInput);
+  EXPECT_THROW(meshed(line, {.vertices = 100}), UnusableInput);
 }
 
 struct Choice {
