@@ -180,7 +180,7 @@ class Chooser {
     for (const Index s : list)
       if (!covered_[surface_.site[s]]) fresh += samples_.area[s];
     const bool whole = fresh > 0.97 * sheet.area;
-    if (fresh < least_area_ || (!whole && core_area(list) < 0.25 * least_area_)) {
+    if (fresh < least_area_ || (!whole && core_area(list) <= 0.25 * least_area_)) {
       result_.dropped += whole;
       return;
     }

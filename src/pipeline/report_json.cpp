@@ -14,10 +14,6 @@ std::string report_json(const Report& r) {
   json["samples"] = r.samples;
   json["alpha"] = r.alpha;
   json["resolution"] = r.resolution;
-  if (r.thickness > 0) {
-    json["thickness"] = r.thickness, json["sites"] = r.sites, json["shell_voxels"] = r.shell_voxels;
-    json["sheets"] = r.sheets, json["cuts"] = r.cuts;
-  }
   json["spacing"] = r.spacing;
   json["energy_ratio"] = r.energy_ratio;
   json["energies"] = r.energies;

@@ -4,7 +4,8 @@
 namespace evenmesh {
 namespace {
 
-// Whether a sample of the axis lies on a ray that the coarser grid has too: its two coordinates across the ray are even.
+// Whether a sample of the axis lies on a ray that the coarser grid has too: its two coordinates across the ray are
+// even.
 bool is_kept(EdgeCode code, int axis) {
   constexpr unsigned odd_across[3] = {1u << 4 | 1u << 1, 1u << 7 | 1u << 1, 1u << 7 | 1u << 4};
   return (code.bits & odd_across[axis]) == 0;

@@ -157,6 +157,13 @@ TEST_F(Jobs, InfoComparesRenders) {
   }
 }
 
+TEST_F(Jobs, WrapClosesAnOpenSheet) {
+  write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  EXPECT_EQ(run({"wrap", "sheet.obj", "-n", "300", "-o", "out.ply", "-q"}).status, 0);
+  EXPECT_NE(info("out.ply").find("\"closed\": true"), std::string::npos);
+  EXPECT_EQ(run({"wrap", "sheet.obj", "--method", "raster", "-n", "300", "-o", "other.ply"}).status, 2);
+}
+
 TEST_F(Jobs, InfoOnPoints) {
   write("two.ply", points_ply);
   write("three.pts", "3\n0 0 0\n1 0 0\n0 -2 0\n");

@@ -35,10 +35,12 @@ Chosen chosen(const Mesh& mesh, std::size_t resolution, unsigned threads = 2, do
   evenmesh::Run run(threads);
   Chosen result{shell_of(mesh, resolution, 2, threads), {}, {}};
   result.sheets = choose_sheets(result.made.surface, result.made.sites, least_area, run);
-  ShellSurface drawn = result.made.surface;
-  draw_onto_surface(drawn, result.made.sites, {}, run);
-  result.samples = std::move(drawn.samples);
+  std::vector<std::uint32_t> index;
+  for (std::uint32_t i = 0; i < result.sheets.chosen.size(); ++i)
+    if (result.sheets.chosen[i]) index.push_back(i);
+  result.samples = result.made.surface.samples;
   keep_samples(result.samples, [&](std::uint32_t i) { return result.sheets.chosen[i] != 0; });
+  result.samples = drawn_onto_surface(std::move(result.samples), index, result.made.surface, result.made.sites, run);
   return result;
 }
 
