@@ -14,7 +14,7 @@ BrickUnion::BrickUnion(const SampleSet& samples, const std::vector<CubeBrick>& b
   });
 }
 
-void BrickUnion::settle(const Run& run) {
+void BrickUnion::flatten(const Run& run) {
   parallel_for(run, parent_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::uint32_t root = static_cast<std::uint32_t>(i);
@@ -22,6 +22,10 @@ void BrickUnion::settle(const Run& run) {
       parent_[i] = root;  // roots stay roots: no other thread's walk is misled
     }
   });
+}
+
+void BrickUnion::settle(const Run& run) {
+  flatten(run);
   parallel_for(run, across_.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       // Few roots meet in one brick: looking through the pairs found so far, the latest first, is fast.

@@ -28,6 +28,9 @@ class BrickUnion {
   /// for any number of threads.
   void settle(const Run& run);
 
+  /// Makes every sample's parent the root of its set.
+  void flatten(const Run& run);
+
   std::vector<std::uint32_t>& parent() { return parent_; }
 
  private:
@@ -59,15 +62,8 @@ std::vector<std::uint32_t> part_roots(const SampleSet& samples, const std::vecto
     }
   });
   sets.settle(run);
-  std::vector<std::uint32_t> roots = std::move(sets.parent());
-  parallel_for(run, roots.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      std::uint32_t root = roots[i];
-      while (roots[root] != root) root = roots[root];
-      roots[i] = root;  // roots stay roots: no other thread's walk is misled
-    }
-  });
-  return roots;
+  sets.flatten(run);
+  return std::move(sets.parent());
 }
 
 }  // namespace evenmesh
