@@ -12,6 +12,7 @@ namespace {
 using Index = std::uint32_t;
 constexpr Index none = 0xffffffffu;
 constexpr double both_sides = 0.02;  ///< share of a part's sites seen from both sides that calls for a cut
+constexpr double new_sheet = 0.3;    ///< share of a sheet over uncovered sites; less is the far side of one taken
 constexpr std::size_t stride = 7;    ///< every so many sites or samples are asked which sides see them
 constexpr double surrounded = 0.98;  ///< share of a rim's neighbours that must be chosen for it to follow
 
@@ -55,6 +56,7 @@ class Chooser {
     find_sheets();
     group_members();
     for (const Index sheet : sheets_in_order()) take(sheets_[sheet]);
+    drop_scraps();
     close_rims();
     return std::move(result_);
   }
@@ -92,15 +94,14 @@ class Chooser {
   /// Whether a condition holds for a site or one beside it: a slanted surface has two layers of sites, and each side
   /// sees its own.
   template <typename Condition>
-  bool any_near(const Voxel& v, const Condition& condition, std::int32_t reach = 1) const {
-    for (std::int32_t z = -reach; z <= reach; ++z)
-      for (std::int32_t y = -reach; y <= reach; ++y)
-        for (std::int32_t x = -reach; x <= reach; ++x)
+  bool any_near(const Voxel& v, const Condition& condition) const {
+    for (std::int32_t z = -1; z <= 1; ++z)
+      for (std::int32_t y = -1; y <= 1; ++y)
+        for (std::int32_t x = -1; x <= 1; ++x)
           if (const auto site = sites_.tiles.number({v[0] + x, v[1] + y, v[2] + z}); site && condition(*site))
             return true;
     return false;
   }
-
   bool opposed(Index s, Index t) const {
     return dot(unpack_normal(samples_.normal[s]), unpack_normal(samples_.normal[t])) < -0.5;
   }
@@ -179,11 +180,12 @@ class Chooser {
     double fresh = 0;
     for (const Index s : list)
       if (!covered_[surface_.site[s]]) fresh += samples_.area[s];
-    const bool whole = fresh > 0.97 * sheet.area;
-    if (fresh < least_area_ || (!whole && core_area(list) <= 0.25 * least_area_)) {
-      result_.dropped += whole;
+    if (fresh < new_sheet * sheet.area) return;
+    if (fresh < least_area_) {
+      ++result_.dropped;
       return;
     }
+    const bool whole = fresh > 0.97 * sheet.area;
     const bool one_sided = is_one_sided(list);
     ++result_.sheets;
     result_.cut += !whole || one_sided;
@@ -191,19 +193,6 @@ class Chooser {
     if (!whole) std::erase_if(taken, [&](Index s) { return covered_[surface_.site[s]] != 0; });
     for (const Index s : taken) result_.chosen[s] = 1;
     for (const Index s : taken) cover(surface_.site[s]);
-  }
-  /// What lies over sites that are not even near covered ones. The far side of a sheet that is taken already has none,
-  /// but for the depths of creases, which this side does not see.
-  double core_area(std::span<const Index> list) const {
-    const auto reach = static_cast<std::int32_t>(surface_.reach) + 1;
-    double area = 0;
-    for (const Index s : list) {
-      const Index site = surface_.site[s];
-      if (!covered_[site] && !any_near(
-                                 voxel_[site], [&](std::uint64_t n) { return covered_[n] != 0; }, reach))
-        area += samples_.area[s];
-    }
-    return area;
   }
   /// The site's neighbours too: those in a second layer, and those in the depth of a crease, are never seen themselves.
   void cover(Index site) {
@@ -246,6 +235,22 @@ class Chooser {
     for (const Index s : list)
       if (dot(up[surface_.site[s]], unpack_normal(samples_.normal[s])) > 0) side.push_back(s);
     return side;
+  }
+
+  /// What is left over between sheets, and smaller than the smallest sheet.
+  void drop_scraps() {
+    if (result_.cut == 0) return;
+    const std::vector<Index> roots = part_roots(samples_, bricks_, run_, [this](Index a, Index b) {
+      return result_.chosen[a] && result_.chosen[b] && sheet_[a] == sheet_[b];
+    });
+    std::vector<float> area(samples_.size(), 0);
+    for (std::size_t i = 0; i < roots.size(); ++i)
+      if (result_.chosen[i]) area[roots[i]] += samples_.area[i];
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      if (!result_.chosen[i] || area[roots[i]] >= least_area_) continue;
+      result_.chosen[i] = 0;
+      result_.dropped += roots[i] == i;
+    }
   }
 
   /// What looked like a rim, but has chosen samples all around, was a sharp crease. Then the border is marked.

@@ -130,7 +130,6 @@ class Writer {
 ShellSurface shell_surface(const Shell& shell, const SiteVoxels& sites, Run& run) {
   return with_threads(run, [&] {
     ShellSurface surface;
-    surface.reach = shell.reach();
     SampleSet& set = surface.samples;
     set.grid = {shell.grid().center({0, 0, 0}), shell.grid().side, shell.grid().size};
     const std::vector<std::uint64_t> codes = brick_codes(shell.tiles());

@@ -21,7 +21,6 @@ struct ShellSurface {
   /// Cosine between the way from the surface to the sample and the surface's normal: 1 in front of the surface, −1
   /// behind it, about 0 around its rim.
   std::vector<float> facing;
-  unsigned reach = 0;  ///< d of the shell, voxels
 };
 
 /// @param sites  those that the shell was built from, with normals
