@@ -99,6 +99,16 @@ DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& pol
   return mesh;
 }
 
+std::size_t remove_pillows(std::vector<Triangle>& triangles, std::size_t vertices) {
+  std::vector<std::uint32_t> used(vertices, 0);
+  for (const Triangle& t : triangles)
+    for (const std::uint32_t v : t) ++used[v];
+  // Two triangles at each corner of a closed surface are the two sides of a pillow.
+  const std::size_t removed = std::erase_if(
+      triangles, [&](const Triangle& t) { return used[t[0]] == 2 && used[t[1]] == 2 && used[t[2]] == 2; });
+  return removed / 2;
+}
+
 Defects manifold_defects(std::span<const Triangle> triangles, std::size_t vertices, bool open) {
   Defects bad;
   const HalfEdges edges(triangles, vertices);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "connect/dual_polygons.h"
 #include "connect/surface_parts.h"
 #include "geometry/half_edges.h"
 #include "pipeline/cells_to_mesh.h"
@@ -167,8 +168,9 @@ class Job {
   }
 
   /// Vertices from cells, onto the surface; labels without triangles are left out.
-  Mesh place(const ConnectedCells& cells) {
+  Mesh place(ConnectedCells& cells) {
     const std::vector<CellShape> shapes = cell_shapes(samples_, cells.labels, cells.seeds, run_);
+    if (!by_shell_ || options_.wrap) report_.dropped_components += remove_pillows(cells.triangles, cells.seeds.size());
     auto& index = vertex_of_label_;
     index.assign(cells.seeds.size(), 0xffffffffu);
     Mesh mesh;

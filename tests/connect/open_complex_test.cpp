@@ -149,5 +149,12 @@ TEST(ManifoldDefects, OpenLetsSeveralFansMeet) {
   EXPECT_TRUE(manifold_defects(bowtie, 5, true).empty());
 }
 
+TEST(Pillows, AreTakenOutAndNothingElse) {
+  std::vector<Triangle> triangles{{0, 1, 2}, {2, 1, 0}, {3, 4, 5}, {3, 5, 6}, {3, 6, 4}, {4, 6, 5}};
+  EXPECT_EQ(remove_pillows(triangles, 7), 1u);
+  EXPECT_EQ(triangles, (std::vector<Triangle>{{3, 4, 5}, {3, 5, 6}, {3, 6, 4}, {4, 6, 5}}));
+  EXPECT_EQ(remove_pillows(triangles, 7), 0u);
+}
+
 }  // namespace
 }  // namespace evenmesh
