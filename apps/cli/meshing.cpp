@@ -54,7 +54,6 @@ MeshOptions mesh_options(const MeshingArguments& a) {
   if (!a.bounds.empty()) options.bounds = box("--bounds", a.bounds);
   options.method = static_cast<Method>(choice("--method", a.method, {"auto", "raster", "shell"}));
   options.wrap = a.wrap;
-  if (a.wrap && options.method == Method::raster) throw InvalidInput("wrap needs the shell; leave out --method raster");
   if (!a.thickness.empty()) options.thickness = static_cast<unsigned>(whole_number("--thickness", a.thickness, 1, 20));
   options.quality = static_cast<Quality>(choice("--quality", a.quality, {"fast", "normal", "high"}));
   options.optimizer = static_cast<Optimizer>(choice("--optimizer", a.optimizer, {"lbfgs", "lloyd"}));

@@ -89,7 +89,7 @@ struct MeshResult {
 /// with promise_broken. The shell method gives a boundary where the surface is open. Same bytes for any number of
 /// threads. Cost: two cores take about 0.1 ms and 7 kB per vertex.
 /// @throws InvalidInput   options out of range
-/// @throws UnusableInput  no surface within the bounds
+/// @throws UnusableInput  no surface within the bounds, or their longest side is not between 1e-8 and 1e10
 /// @throws Cancelled      through `run`
 /// Based on Martínez, Claux, Lefebvre, Raster2Mesh, Inria RR-8684, 2015, and, for the shell, on Leung, Wang, He, Liu,
 /// Wang, A unified framework for isotropic meshing based on narrow-banded Euclidean distance transformation,

@@ -71,6 +71,9 @@ class RegularizedProjector : public Projector {
   const BallIndex& balls_;
 };
 
+/// Single precision holds areas and energies, products of up to four lengths, of models between these sizes.
+constexpr double smallest_model = 1e-8, largest_model = 1e10;
+
 class Job {
  public:
   Job(const Shape& shape, const MeshOptions& options, Run& run)
@@ -101,6 +104,8 @@ class Job {
 
  private:
   static bool wants_shell(const Shape& shape, const MeshOptions& options) {
+    if (options.method == Method::raster && (options.wrap || shape.points()))
+      throw InvalidInput("rays need a solid: points and wraps are meshed by the shell method");
     if (options.method == Method::shell || options.wrap || shape.points()) return true;
     return options.method == Method::automatic && shape.mesh() && is_open_surface(*shape.mesh());
   }
@@ -112,6 +117,10 @@ class Job {
     } else if (shape_.bounds.empty()) {
       shape_.bounds = stages_.stage("sample", 0, [&] { return find_bounds(*shape_.field()); });
     }
+    const double longest = shape_.bounds.longest_side();
+    if (longest > 0 && !(longest >= smallest_model && longest <= largest_model))
+      throw UnusableInput(fmt::format("the longest side measures {:.3g}: scale it to lie between {:g} and {:g}",
+                                      longest, smallest_model, largest_model));
   }
 
   void sample() {

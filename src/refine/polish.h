@@ -7,7 +7,7 @@
 
 namespace evenmesh {
 
-/// Moves the vertices of bad triangles (Q below 0.72 or an angle below 38°) along the surface so that the worst one
+/// Moves the vertices of bad triangles (Q below 0.7 or an angle below 38°) along the surface so that the worst one
 /// around each of them gets better (pattern search, steps of a fifth to a hundredth of the local edge length), then
 /// back onto the surface; never folds a triangle over.
 ///

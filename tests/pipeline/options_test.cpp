@@ -32,6 +32,11 @@ TEST(MeshOptions, OutOfRangeIsRefused) {
   for (std::size_t i = 0; i < std::size(wrong); ++i) EXPECT_THROW(meshed(ball, wrong[i]), InvalidInput) << "case " << i;
 }
 
+TEST(MeshOptions, RaysNeedASolid) {
+  const Shape points = shape_from_points({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {}});
+  EXPECT_THROW(meshed(points, {.vertices = 100, .method = Method::raster}), InvalidInput);
+}
+
 TEST(MeshOptions, AreLookedAtBeforeTheShape) {
   const Shape line = shape_from_points({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {}});
   EXPECT_THROW(meshed(line, {.vertices = 3}), InvalidInput);

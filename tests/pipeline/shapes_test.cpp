@@ -117,6 +117,22 @@ TEST(MeshShape, OpenMeshesAreClosedAndSaid) {
   EXPECT_NEAR(result.report.quality.volume, 2 * pi / 3, 0.1 * 2 * pi / 3);
 }
 
+TEST(MeshShape, SizeDoesNotMatterAsLongAsNumbersHoldIt) {
+  for (const Method method : {Method::raster, Method::shell})
+    for (const double size : {1e-30, 1e-8, 1e9, 1e30}) {
+      Mesh ball = make_icosphere(3);
+      for (Vec3& v : ball.vertices) v *= size;
+      const MeshOptions options{.vertices = 300, .method = method};
+      if (size < 1e-8 || size > 1e10) {
+        EXPECT_THROW(meshed(shape_from_mesh(ball), options), UnusableInput) << size;
+        continue;
+      }
+      const MeshQuality q = meshed(shape_from_mesh(ball), options).report.quality;
+      EXPECT_GT(q.q_avg, 0.9) << size;
+      EXPECT_EQ(q.euler, 2) << size;
+    }
+}
+
 TEST(MeshShape, BoundsCutAndCap) {
   const Box half{{-1.1, -1.1, -1.1}, {0, 1.1, 1.1}};
   for (const Shape& shape : {gallery_shape("sphere"), shape_from_mesh(make_icosphere(4))}) {
