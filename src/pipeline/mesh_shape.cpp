@@ -35,6 +35,8 @@ void check(const MeshOptions& o) {
     throw InvalidInput("the shell's thickness must lie in [1, 20] voxels");
   if (o.iterations && *o.iterations > 10'000) throw InvalidInput("the iterations must lie in [0, 10000]");
   if (!(o.tolerance > 0 && o.tolerance < 1)) throw InvalidInput("the tolerance must lie in (0, 1)");
+  if (o.bounds && !(is_finite(o.bounds->lo) && is_finite(o.bounds->hi)) && !o.bounds->empty())
+    throw InvalidInput("the bounds are not finite: give six numbers");
   if (o.bounds && o.bounds->empty())
     throw InvalidInput("the bounds are empty: each lower limit must be below its upper one");
 }
