@@ -57,7 +57,11 @@ class Cells {
     mend();
     trim_count();
     const bool two_manifold = !needs_seeds();
-    return {std::move(seeds_), std::move(labels_), std::move(complex_.triangles), two_manifold, {}, std::move(balls_)};
+    return {.seeds = std::move(seeds_),
+            .labels = std::move(labels_),
+            .triangles = std::move(complex_.triangles),
+            .two_manifold = two_manifold,
+            .balls = std::move(balls_)};
   }
 
  private:

@@ -83,20 +83,8 @@ class Job {
 
   MeshResult result() {
     ConnectedCells& cells = cells_;
-    if (by_shell_) {
-      find_shape_bounds();
-      if (options_.wrap) {
-        samples_ = sample_wrapping(shape_, options_, stages_, report_, run_);
-        cells = balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
-      } else {
-        ShellSampling sampling = sample_by_shell(shape_, options_, stages_, report_, run_);
-        cells = connect_shell(sampling, options_, stages_, report_, run_);
-        samples_ = std::move(sampling.on_surface);
-      }
-    } else {
-      sample();
-      cells = balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
-    }
+    find_shape_bounds();
+    cells = by_shell_ && !options_.wrap ? cells_of_sheets() : cells_of_solid();
     Mesh mesh = stages_.stage("place", 0.1, [&] { return place(cells); });
     stages_.stage("refine", 0.05, [&] { refine(mesh, cells.labels); });
     stages_.stage("measure", 0.05, [&] { finish(mesh, cells.two_manifold); });
@@ -125,8 +113,21 @@ class Job {
                                       longest, smallest_model, largest_model));
   }
 
+  ConnectedCells cells_of_sheets() {
+    ShellSampling sampling = sample_by_shell(shape_, options_, stages_, report_, run_);
+    ConnectedCells cells = connect_shell(sampling, options_, stages_, report_, run_);
+    samples_ = std::move(sampling.on_surface);
+    return cells;
+  }
+  ConnectedCells cells_of_solid() {
+    if (options_.wrap)
+      samples_ = sample_wrapping(shape_, options_, stages_, report_, run_);
+    else
+      sample();
+    return balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
+  }
+
   void sample() {
-    find_shape_bounds();
     const Box& bounds = shape_.bounds;
     const SurfaceScale scale =
         stages_.stage("sample", 0.02, [&] { return scout_scale(shape_, options_.resolution.value_or(0), run_); });

@@ -34,7 +34,11 @@ class ShellCells {
       report_.energy_ratio = result.energy_ratio;
     });
     connect();
-    for (int round = 0; round < topology_rounds && !defects().empty(); ++round) mend();
+    for (int round = 0; round < topology_rounds; ++round) {
+      const auto found = defects();
+      if (found.empty()) break;
+      mend(found);
+    }
     ConnectedCells cells;
     cells.two_manifold = complex_.defects.empty();
     cells.anchors = anchors();
@@ -69,14 +73,14 @@ class ShellCells {
     return list;
   }
 
-  void mend() {
+  void mend(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& found) {
     const std::size_t given = seeds_.size() - complex_.pieces.size();
     const Mending mending = stages_.stage("connect", 0, [&] {
       const double edge = edge_length_of(samples_.total_area, static_cast<double>(seeds_.size()));
-      return plan_mending(samples_, labels_, seeds_, defects(), {}, BallIndex({}),
+      return plan_mending(samples_, labels_, seeds_, found, {}, BallIndex({}),
                           {.edge = edge, .given = given, .seeds_only = true});
     });
-    run_.log(fmt::format("mend: {} defects, {} seeds", defects().size(), seeds_.size()));
+    run_.log(fmt::format("mend: {} defects, {} seeds", found.size(), seeds_.size()));
     seeds_.resize(given);
     seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
     report_.inserted_seeds += mending.seeds.size();

@@ -1,5 +1,6 @@
 #include "sample/bridge_points.h"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <optional>
 
@@ -113,6 +114,52 @@ class Bridge {
 };
 
 }  // namespace
+
+void estimate_normals(SiteVoxels& sites, unsigned radius, Run& run) {
+  sites.normal.resize(sites.size());
+  const auto r = static_cast<std::int32_t>(radius);
+  const auto point_of = [&](const Voxel& v) -> std::optional<Vec3> {
+    const auto at = sites.tiles.number(v);
+    if (!at) return std::nullopt;
+    return sites.grid.center(v) + Vec3{sites.x[*at], sites.y[*at], sites.z[*at]};
+  };
+  const auto normal_at = [&](const Voxel& v, const Vec3& p) {
+    Vec3 mean;
+    double count = 0;
+    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+    for (std::int32_t z = -r; z <= r; ++z)
+      for (std::int32_t y = -r; y <= r; ++y)
+        for (std::int32_t x = -r; x <= r; ++x) {
+          if (x * x + y * y + z * z > r * r) continue;
+          const auto q = point_of({v[0] + x, v[1] + y, v[2] + z});
+          if (!q) continue;
+          const Vec3 d = (*q - p) / sites.grid.side;
+          mean += d, count += 1;
+          for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b) moments(a, b) += d[a] * d[b];
+        }
+    if (count < 3) return Vec3{0, 0, 1};
+    mean = mean / count;
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) moments(a, b) = moments(a, b) / count - mean[a] * mean[b];
+    const Eigen::Vector3d n = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().col(0);
+    return Vec3{n[0], n[1], n[2]};
+  };
+  with_threads(run, [&] {
+    parallel_for(run, sites.tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const VoxelTile& tile = sites.tiles[t];
+        std::uint64_t at = tile.begin;
+        for_each_voxel(tile, [&](unsigned x, unsigned y, unsigned z) {
+          const Voxel v{tile.corner()[0] + std::int32_t(x), tile.corner()[1] + std::int32_t(y),
+                        tile.corner()[2] + std::int32_t(z)};
+          sites.normal[at] = pack_normal(normal_at(v, *point_of(v)));
+          ++at;
+        });
+      }
+    });
+  });
+}
 
 SiteVoxels bridge_points(const SiteVoxels& sparse, const Shell& shell, double spacing, bool oriented, Run& run) {
   return with_threads(run, [&] {

@@ -6,6 +6,10 @@
 
 namespace evenmesh {
 
+/// Normals of sites that have none: of the plane through the sites' points within `radius` voxels, both ways round
+/// (their sign means nothing). Cost: O(sites · radius³).
+void estimate_normals(SiteVoxels& sites, unsigned radius, Run& run);
+
 /// The voxels that a smooth surface through scattered sites touches, within the shell that bridges their gaps.
 ///
 /// At each voxel the sites within 2.5 spacings, weighted by distance, give a plane; voxels that it passes through are

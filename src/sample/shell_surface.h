@@ -38,8 +38,4 @@ inline constexpr float clearly_facing = 0.5f;
 SampleSet drawn_onto_surface(SampleSet samples, std::span<const std::uint32_t> index, const ShellSurface& surface,
                              const SiteVoxels& sites, Run& run);
 
-/// Normals of sites that have none: of the plane through the sites' points within `radius` voxels, both ways round
-/// (their sign means nothing). Cost: O(sites · radius³).
-void estimate_normals(SiteVoxels& sites, unsigned radius, Run& run);
-
 }  // namespace evenmesh
