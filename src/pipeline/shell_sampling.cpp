@@ -180,9 +180,9 @@ ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& s
     sampling.surface = shell_surface(shell, sites, run);
   });
   stages.stage("sheets", 0.1, [&] {
-    // Cells on one sheet and not worth a triangle of their own; of points, what noise makes.
+    // Less is not worth a triangle; of points, what noise makes is larger.
     const double cell = 0.5 * sampling.surface.samples.total_area / static_cast<double>(plan.vertices);
-    const double least_area = (shape.points() ? 10 : 2) * cell;
+    const double least_area = (shape.points() ? 10 : 1) * cell;
     sampling.sheets = choose_sheets(sampling.surface, sites, least_area, run);
     for (std::uint32_t i = 0; i < sampling.sheets.chosen.size(); ++i)
       if (sampling.sheets.chosen[i]) sampling.in_surface.push_back(i);

@@ -14,6 +14,7 @@ constexpr double least_score = 0.913;    ///< Q ≥ 0.639, angles ≥ 34.2°
 constexpr double most_lift = 0.2;        ///< of the edge length
 constexpr double among_the_worst = 0.8;  ///< of the largest deviation: what a round looks at
 constexpr int most_rounds = 16;
+constexpr int most_rounds_inexact = 4;  ///< on samples off the surface: later rounds only cost quality
 constexpr int most_shakes = 2;  ///< rounds around the worst where nothing helps there
 constexpr std::size_t samples_per_cell = 20;
 
@@ -356,7 +357,8 @@ std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const s
   std::size_t moves = 0;
   int shakes = 0;
   bool shake = false;
-  for (int round = 0; round < most_rounds; ++round) {
+  const int rounds = sample_error > 0 ? most_rounds_inexact : most_rounds;
+  for (int round = 0; round < rounds; ++round) {
     fit.measure_deviations(run);
     std::vector<std::uint32_t> worst = shake ? fit.around_the_stuck() : fit.far_vertices(among_the_worst);
     const std::size_t before = moves;
