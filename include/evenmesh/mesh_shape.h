@@ -71,6 +71,8 @@ struct Report {
   unsigned thickness = 0;              ///< shell: half its width in voxels
   std::size_t sheets = 0;              ///< shell: connected pieces of surface
   std::size_t cuts = 0;  ///< shell: sheets that had to end where others meet them, and vertices that were split
+  std::size_t merges = 0;        ///< shell: gaps between sheets that it fills, hiding surface
+  unsigned thickness_apart = 0;  ///< shell: the largest thickness that fills none of them; 0: the voxels are too large
   std::size_t inserted_seeds = 0;  ///< added because the topology needed them
   std::size_t regularization_rounds = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time per stage, in order

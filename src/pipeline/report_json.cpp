@@ -23,6 +23,8 @@ std::string report_json(const Report& r) {
   json["sites"] = r.sites;
   json["shell_voxels"] = r.shell_voxels;
   json["thickness"] = r.thickness;
+  json["merges"] = r.merges;
+  json["thickness_apart"] = r.thickness_apart;
   json["sheets"] = r.sheets;
   json["cuts"] = r.cuts;
   json["inserted_seeds"] = r.inserted_seeds;

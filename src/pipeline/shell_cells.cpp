@@ -14,7 +14,7 @@ namespace evenmesh {
 namespace {
 
 constexpr int topology_rounds = 12;
-constexpr double shell_effort = 2;  ///< of balancing, a small part of the time here: Q 0.005 higher for 15 % more of it
+constexpr double shell_effort = 1.7;  ///< of balancing, a small part of the time here: Q 0.005 higher for 10 % more of it
 
 class ShellCells {
  public:

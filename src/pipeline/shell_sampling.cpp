@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "connect/surface_parts.h"
 #include "geometry/half_edges.h"
@@ -11,6 +12,7 @@
 #include "pipeline/fineness.h"
 #include "sample/blocks.h"
 #include "sample/bridge_points.h"
+#include "sample/filled_gaps.h"
 
 namespace evenmesh {
 namespace {
@@ -170,14 +172,48 @@ void sample_well(ShellPlan plan, bool may_refine, const Sample& sample) {
   sample(plan);
 }
 
-ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& stages, Report& report, Run& run) {
+/// Counts the gaps that hide surface (elsewhere it is still seen from its other side); returns the narrowest.
+std::optional<FilledGap> report_gaps(std::vector<FilledGap> gaps, const ShellSampling& sampling, std::size_t sites, Report& report) {
+  std::vector<char> seen(sites, 0);
+  for (const std::uint32_t i : sampling.in_surface) seen[sampling.surface.site[i]] = 1;
+  std::erase_if(gaps, [&](const FilledGap& gap) {
+    const auto count = std::count_if(gap.sites.begin(), gap.sites.end(), [&](std::uint32_t s) { return seen[s] != 0; });
+    return 2 * static_cast<std::size_t>(count) > gap.sites.size();
+  });
+  report.merges = gaps.size(), report.thickness_apart = report.thickness;
+  if (gaps.empty()) return std::nullopt;
+  const auto narrowest = std::min_element(gaps.begin(), gaps.end(), [](const FilledGap& a, const FilledGap& b) {
+    return std::pair(a.kept_apart, a.width) < std::pair(b.kept_apart, b.width);
+  });
+  report.thickness_apart = narrowest->kept_apart;
+  return *narrowest;
+}
+
+Notice merge_notice(const FilledGap& narrowest, const Report& report) {
+  const double finer = std::ceil(3.5 * report.spacing / narrowest.width * static_cast<double>(report.resolution));
+  std::string cure = "no resolution up to 8192 keeps them apart";
+  if (narrowest.kept_apart > 0) {
+    cure = fmt::format("--thickness {} keeps them apart", narrowest.kept_apart);
+  } else if (finer <= 8192) {
+    cure = fmt::format("-r {:.0f} --thickness 1 keeps them apart", finer);
+  }
+  const Vec3& at = narrowest.middle;
+  return {false, fmt::format("sheets that come within {:.3g} of each other merge in {} places, first at ({:.4g}, {:.4g}, "
+                             "{:.4g}): {}",
+                             narrowest.width, report.merges, at.x, at.y, at.z, cure)};
+}
+
+ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& stages, Report& report,
+                            std::optional<FilledGap>& narrowest, Run& run) {
   const SiteVoxels sites = stages.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, run); });
   if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
   ShellSampling sampling;
+  std::vector<FilledGap> gaps;
   stages.stage("shell", 0.1, [&] {
     const Shell shell = build_shell(sites, plan.thickness, run);
     report.shell_voxels = shell.size();
     sampling.surface = shell_surface(shell, sites, run);
+    gaps = filled_gaps(shell, sites, run);
   });
   stages.stage("sheets", 0.1, [&] {
     // Less is not worth a triangle; of points, what noise makes is larger.
@@ -195,6 +231,7 @@ ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& s
   report_sampling(plan, sampling.samples.size(), sites, report);
   report.sheets = sampling.sheets.sheets, report.cuts = sampling.sheets.cut;
   report.dropped_components = sampling.sheets.dropped;
+  narrowest = report_gaps(std::move(gaps), sampling, sites.size(), report);
   return sampling;
 }
 
@@ -229,12 +266,14 @@ ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, St
                               Run& run) {
   const ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
   ShellSampling sampling;
+  std::optional<FilledGap> narrowest;
   sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
     sampling = {};  // frees the memory first
-    sampling = sample_sheets(shape, p, stages, report, run);
+    sampling = sample_sheets(shape, p, stages, report, narrowest, run);
     return sampling.samples.size();
   });
   limit_seeds(report);
+  if (narrowest && !shape.points()) report.notices.push_back(merge_notice(*narrowest, report));
   if (sampling.sheets.cut > 0)
     report.notices.push_back(
         {false, fmt::format("{} sheets of surface end where others meet or cross them", sampling.sheets.cut)});

@@ -90,9 +90,9 @@ class Writer {
     ++upper[code.axis()];
     const bool up = code.lower_end_inside();
     const Voxel &in = up ? lower : upper, &beyond = up ? upper : lower;
-    const std::uint32_t site = site_index(sites_, in, *shell_.find(in));
-    const Vec3 p =
-        shell_.grid().center(shell_.find(in)->site(in)) + Vec3{sites_.x[site], sites_.y[site], sites_.z[site]};
+    const NearestSite nearest = *shell_.find(in);
+    const std::uint32_t site = site_index(sites_, in, nearest);
+    const Vec3 p = shell_.grid().center(nearest.site(in)) + Vec3{sites_.x[site], sites_.y[site], sites_.z[site]};
     const Vec3 out = shell_.grid().center(beyond) - p;
     Vec3 n = unpack_normal(sites_.normal[site]);
     const double facing = dot(normalized(out), n);

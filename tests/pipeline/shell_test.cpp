@@ -113,6 +113,37 @@ TEST(ShellMethod, FinsAndJunctionsAreCut) {
   }
 }
 
+/// As the knotty bottle of [NBEDT Fig. 11]: two voids, one of them 4.5 voxels wide.
+TEST(ShellMethod, SaysWhichThicknessKeepsSheetsApart) {
+  const Shape block = shape_from_expression(
+      "max(max(max(abs(x)-20, abs(y)-12), abs(z)-6), max(2.25-max(abs(x-8),abs(y)), 5-max(abs(x+8),abs(y))))", {},
+      {{-20, -20, -20}, {20, 20, 20}});
+  const auto at = [&](unsigned thickness) {
+    MeshOptions options = by_shell(1200, 40);
+    options.thickness = thickness;
+    const MeshResult result = meshed(block, options);
+    EXPECT_TRUE(result.report.quality.closed() && result.report.quality.two_manifold());
+    return result.report;
+  };
+  const Report apart = at(1), merged = at(2);
+  EXPECT_EQ(apart.quality.euler, -2);
+  EXPECT_EQ(apart.merges, 0u);
+  EXPECT_EQ(apart.thickness_apart, 1u);
+  EXPECT_EQ(merged.quality.euler, 0) << "the narrow one is filled";
+  EXPECT_EQ(merged.merges, 1u);
+  EXPECT_EQ(merged.thickness_apart, 1u);
+  EXPECT_TRUE(std::any_of(merged.notices.begin(), merged.notices.end(), [](const Notice& n) {
+    return n.text.find("--thickness 1 keeps them apart") != std::string::npos;
+  }));
+}
+
+TEST(ShellMethod, ThinWallsHideNothing) {
+  // The shell fills the wall, but its outside is seen: nothing to warn of.
+  const MeshResult result = meshed(shape_from_mesh(make_box({1, 1, 0.04}, 4)), by_shell(400, 60));
+  EXPECT_EQ(result.report.merges, 0u);
+  EXPECT_EQ(result.report.quality.euler, 2);
+}
+
 TEST(ShellMethod, ASingleTriangleIsMeshed) {
   const MeshResult result =
       meshed(shape_from_mesh({{{0, 0, 0}, {1, 0, 0.2}, {0.3, 0.9, 0}}, {{0, 1, 2}}}), by_shell(60));
