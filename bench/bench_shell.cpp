@@ -5,6 +5,9 @@
 // Without a file a torus. Arguments: voxels along the longest side, reach d, threads (0 = all processors).
 #include <benchmark/benchmark.h>
 #include <malloc.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/MeshToVolume.h>
+#include <tbb/task_arena.h>
 
 #include <fstream>
 #include <string>
@@ -70,6 +73,29 @@ void both(benchmark::State& state) {
   state.counters["peak"] = peak;
 }
 
+/// OpenVDB's narrow band of the same width around the same mesh, signed, with its memory.
+void openvdb_band(benchmark::State& state) {
+  const double side = model().bounds().longest_side() / static_cast<double>(state.range(0));
+  openvdb::initialize();
+  const auto transform = openvdb::math::Transform::createLinearTransform(side);
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec3I> triangles;
+  for (const Vec3& v : model().vertices) points.emplace_back(v.x, v.y, v.z);
+  for (const Triangle& t : model().triangles) triangles.emplace_back(t[0], t[1], t[2]);
+  tbb::task_arena arena(state.range(1) == 0 ? tbb::task_arena::automatic : static_cast<int>(state.range(1)));
+  double peak = 0;
+  for (auto _ : state) {
+    const PeakMemory memory;
+    const auto grid = arena.execute([&] {
+      return openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*transform, points, triangles,
+                                                                static_cast<float>(state.range(2)));
+    });
+    peak = memory.bytes();
+    state.counters["voxels"] = static_cast<double>(grid->activeVoxelCount());
+  }
+  state.counters["peak"] = peak;
+}
+
 void transform(benchmark::State& state) {
   const VoxelGrid grid = make_voxel_grid(model().bounds(), static_cast<std::size_t>(state.range(0)), 10);
   Run run(static_cast<unsigned>(state.range(1)));
@@ -97,6 +123,11 @@ int main(int argc, char** argv) {
       ->UseRealTime();
   benchmark::RegisterBenchmark("transform", transform)
       ->ArgsProduct({{512, 1024, 2048}, {0, 1}, {3, 9}})
+      ->ArgNames({"res", "threads", "d"})
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
+  benchmark::RegisterBenchmark("openvdb", openvdb_band)
+      ->ArgsProduct({{512, 1024, 2048}, {0, 1}, {3}})
       ->ArgNames({"res", "threads", "d"})
       ->Unit(benchmark::kMillisecond)
       ->UseRealTime();

@@ -1,5 +1,4 @@
 # The installed library (all rooms in one archive), the program, tests, benchmarks, fuzzers.
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 # The library: one archive, so that whoever installs it need not know the rooms.
@@ -27,6 +26,13 @@ write_basic_package_version_file(evenmeshConfigVersion.cmake COMPATIBILITY SameM
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/evenmeshConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/evenmeshConfigVersion.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evenmesh)
 
+# What only some need, and slow to load (src/io/vdb/plugin.h).
+add_library(evenmesh_vdb MODULE src/io/vdb/plugin.cpp)
+set_target_properties(evenmesh_vdb PROPERTIES PREFIX "")
+target_include_directories(evenmesh_vdb PRIVATE include src)
+target_link_libraries(evenmesh_vdb PRIVATE evenmesh_flags openvdb Imath)
+install(TARGETS evenmesh_vdb DESTINATION ${CMAKE_INSTALL_LIBDIR}/evenmesh)
+
 # The program. It sees the public headers only, like any other user of the library.
 find_package(CLI11 REQUIRED)
 file(GLOB sources CONFIGURE_DEPENDS apps/cli/*.cpp)
@@ -35,6 +41,7 @@ target_link_libraries(evenmesh PRIVATE evenmesh_flags evenmesh_library CLI11::CL
                                        nlohmann_json::nlohmann_json)
 target_compile_definitions(evenmesh PRIVATE EVENMESH_VERSION="${PROJECT_VERSION}")
 set_target_properties(evenmesh PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+add_dependencies(evenmesh evenmesh_vdb)
 install(TARGETS evenmesh)
 
 if(EVENMESH_TESTS)
@@ -50,6 +57,7 @@ if(EVENMESH_BENCH)
     target_include_directories(${name} PRIVATE src)
     target_link_libraries(${name} PRIVATE evenmesh_flags evenmesh_library Eigen3::Eigen benchmark::benchmark_main)
   endforeach()
+  target_link_libraries(bench_shell PRIVATE openvdb Imath)  # runs beside ours
 endif()
 
 file(GLOB examples CONFIGURE_DEPENDS examples/*.cpp)

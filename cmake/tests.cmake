@@ -24,6 +24,11 @@ if(TARGET test_pipeline)
   target_link_libraries(test_pipeline PRIVATE evenmesh_io)  # models are files
 endif()
 
+if(TARGET test_io)
+  target_link_libraries(test_io PRIVATE openvdb Imath)  # reads back what the plugin wrote
+  add_dependencies(test_io evenmesh_vdb)
+endif()
+
 # The house: who includes whom, examples that compile.
 evenmesh_test(house)
 # The program, driven from outside.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "evenmesh/io.h"
 #include "evenmesh/render.h"
 #include "interrupt.h"
 #include "output.h"
@@ -28,7 +29,6 @@ void refuse_planned_options(const MeshingArguments& a) {
   if (!a.max_cycle.empty()) not_available("--max-cycle");
   if (!a.dump_dexels.empty()) not_available("--dump-dexels");
   if (!a.entry.empty()) not_available("--entry");
-  choice("--connect", a.connect, {"complex"}, {"fragments", "flood"});
   choice("--topology", a.topology, {"keep"}, {"simplify"});
   choice("--backend", a.backend, {"cpu"}, {"gl"});
   if (a.features != "off") {
@@ -58,6 +58,7 @@ MeshOptions mesh_options(const MeshingArguments& a) {
   options.quality = static_cast<Quality>(choice("--quality", a.quality, {"fast", "normal", "high"}));
   options.optimizer = static_cast<Optimizer>(choice("--optimizer", a.optimizer, {"lbfgs", "lloyd"}));
   options.start = static_cast<Start>(choice("--start", a.start, {"random", "blue-noise", "coarse-to-fine"}));
+  options.connect = static_cast<Connect>(choice("--connect", a.connect, {"complex", "flood"}, {"fragments"}));
   options.placement =
       static_cast<Placement>(choice("--placement", a.placement, {"centroid", "constrained", "quadric"}));
   if (!a.iterations.empty()) options.iterations = whole_number("--iterations", a.iterations, 0, 10'000);
@@ -88,6 +89,7 @@ Json options_json(const MeshingArguments& a, unsigned threads) {
   given("edge_length", a.edge_length);
   given("resolution", a.resolution);
   given("thickness", a.thickness);
+  given("outliers", a.outliers);
   given("bounds", a.bounds);
   given("quality", a.quality);
   given("method", a.method);
@@ -116,6 +118,7 @@ std::string run_json(const Report& report, const MeshingArguments& a, unsigned t
 /// What the checks of the command line leave to do.
 struct Plan {
   MeshOptions options;
+  std::optional<double> outliers;  ///< standard deviations
   MeshOutput output;
   unsigned threads = 0;
   Talk talk = Talk::normal;
@@ -127,6 +130,7 @@ Plan check(MeshingArguments& a) {
   refuse_planned_options(a);
   Plan plan;
   plan.options = mesh_options(a);
+  if (!a.outliers.empty()) plan.outliers = real_number("--outliers", a.outliers, 0, 100);
   plan.threads = static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024));
   choice("--progress", a.progress, {"auto", "on", "off"});
   if (a.quiet && a.verbose) throw InvalidInput("-q and -v contradict each other; give one of them");
@@ -134,10 +138,21 @@ Plan check(MeshingArguments& a) {
   plan.output = check_mesh_output(a.output, a.format);
   if (!a.report.empty()) check_output("--report", a.report);
   if (!a.json.empty()) check_output("--json", a.json);
-  if ((a.output == "-") + (a.json == "-") + (a.report == "-") > 1) {
-    throw InvalidInput("only one of -o, --json and --report can go to standard output");
+  if (!a.dump_shell.empty()) check_output("--dump-shell", a.dump_shell);
+  plan.options.keep_shell = !a.dump_shell.empty(), plan.options.keep_shell_cut = !a.report.empty();
+  if ((a.output == "-") + (a.json == "-") + (a.report == "-") + (a.dump_shell == "-") > 1) {
+    throw InvalidInput("only one of -o, --json, --report and --dump-shell can go to standard output");
   }
   return plan;
+}
+
+/// The shape without points that lie far from all others.
+Shape without_outliers(const Shape& shape, double deviations, Talk talk, Run& run) {
+  if (!shape.points()) throw InvalidInput("--outliers is for points; the input has a surface");
+  const std::size_t given = shape.points()->points.size();
+  PointCloud cloud = remove_outliers(*shape.points(), {.deviations = deviations}, run);
+  if (talk != Talk::quiet) say("note", fmt::format("{} of {} points left out", given - cloud.points.size(), given));
+  return shape_from_points(std::move(cloud), shape.name);
 }
 
 bool tell_notices(const Report& report, Talk talk) {
@@ -165,11 +180,14 @@ int run_meshing(MeshingArguments a) {
   double reading = 0;
   {
     Terminal terminal(run, plan.talk, a.progress);
-    const Shape shape = read_shape(a.input, plan.options.bounds.value_or(Box{}), run);
+    Shape shape = read_shape(a.input, plan.options.bounds.value_or(Box{}), run);
+    if (plan.outliers) shape = without_outliers(shape, *plan.outliers, plan.talk, run);
     reading = seconds_since(start);
     result = mesh_shape(shape, plan.options, run);
     auto& seconds = result.report.seconds;
     seconds.insert(seconds.begin(), {"read", reading});
+    if (!a.dump_shell.empty() && result.shell.voxels.empty())
+      throw InvalidInput("--dump-shell: rays have no shell; add --method shell");
     if (!a.report.empty()) html = report_html(result, shape.name, run);
   }
   {
@@ -178,11 +196,12 @@ int run_meshing(MeshingArguments a) {
     write_output(plan.output, result.mesh);
     result.report.seconds.emplace_back("write", seconds_since(writing));
     if (!a.report.empty()) write_output(a.report, html);
+    if (!a.dump_shell.empty()) write_output(a.dump_shell, serialize_vdb(result.shell));
     if (!a.json.empty()) write_output(a.json, run_json(result.report, a, plan.threads));
   }
   const bool kept = tell_notices(result.report, plan.talk);
   if (plan.talk != Talk::quiet) {
-    const bool stdout_taken = a.output == "-" || a.json == "-" || a.report == "-";
+    const bool stdout_taken = a.output == "-" || a.json == "-" || a.report == "-" || a.dump_shell == "-";
     fmt::print(stdout_taken ? stderr : stdout, "{}", summary(result.report, a.output, seconds_since(start)));
   }
   return kept ? Status::done : Status::promise_broken;

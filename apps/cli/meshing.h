@@ -20,7 +20,7 @@ struct MeshingArguments {
   std::string method = "auto", connect = "complex", topology = "keep", features = "off", density = "uniform";
   std::string backend = "cpu", threads = "0", progress = "auto";
   std::string report, json;
-  std::string thickness;
+  std::string thickness, outliers, dump_shell;
   std::string error, max_cycle, dump_dexels, entry;  ///< documented, not available yet
   bool quiet = false, verbose = false;
   bool wrap = false;

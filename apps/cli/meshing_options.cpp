@@ -46,10 +46,15 @@ void add_effort(CLI::App& app, MeshingArguments& a) {
   option("--seed", a.seed, "S", "of the random numbers, 0 to 18446744073709551615; default 1");
   option("--placement", a.placement, "NAME", "of the vertices: centroid|constrained|quadric; default quadric");
   option("--connect", a.connect, "NAME",
-         "cells to triangles: complex (fragments, flood: not available);\ndefault complex");
+         "cells to triangles: complex (by the nearest vertex), flood (by the first\nalong the surface); fragments: not "
+         "available; default complex");
   option("--thickness", a.thickness, "D",
          "half width of the shell in voxels, 1 to 20: gaps narrower than twice\nthat are bridged; default 2, for "
          "points by their spacing");
+  option("--outliers", a.outliers, "S",
+         "leave out points whose mean distance to their neighbours is more than S\nstandard deviations above the mean, "
+         "0 to "
+         "100, e.g. 3; default: none");
   option("--max-cycle", a.max_cycle, "N", "longest cycle of --connect fragments; not available in this version");
 }
 
@@ -63,6 +68,8 @@ void add_how(CLI::App& app, MeshingArguments& a) {
   option("--report", a.report, "FILE", "write pictures and figures of the run as one HTML page");
   option("--json", a.json, "FILE", "write the figures of the run as JSON, - for standard output");
   option("--dump-dexels", a.dump_dexels, "FILE", "write the sampled solid (.tdx); not available in this version");
+  option("--dump-shell", a.dump_shell, "FILE",
+         "write the shell (.vdb): distance of its voxels from the surface, model units");
   option("--progress", a.progress, "WHEN", "progress bar: auto|on|off; default auto = on a terminal");
   app.add_flag("-q,--quiet", a.quiet, "say nothing but errors and broken promises")->group(group);
   app.add_flag("-v,--verbose", a.verbose, "also say what each stage does")->group(group);

@@ -1,5 +1,5 @@
 #pragma once
-/// Mesh files, in and out: PLY, OBJ, STL, OFF, GLB, 3MF. Point clouds, in: XYZ, PTS, PWN, PLY.
+/// Mesh files, in and out: PLY, OBJ, STL, OFF, GLB, 3MF. Point clouds, in: XYZ, PTS, PWN, PLY. Volumes, out: VDB.
 
 #include <filesystem>
 #include <iosfwd>
@@ -11,6 +11,7 @@
 #include "evenmesh/mesh.h"
 #include "evenmesh/points.h"
 #include "evenmesh/run.h"
+#include "evenmesh/volume.h"
 
 namespace evenmesh {
 
@@ -65,6 +66,11 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path, std::option
 
 /// The bytes of a mesh file.
 std::string serialize_mesh(const Mesh& mesh, MeshFormat format);
+
+/// The bytes of an OpenVDB file with one grid of floats; its active voxels are those of the volume. They differ from
+/// call to call, since OpenVDB gives every file an identifier of its own; what they say does not.
+/// @throws InvalidInput  the side is not above 0, or there is not one value for each voxel
+std::string serialize_vdb(const SparseVolume& volume);
 
 /// Writes any text or binary file atomically: temporary name beside it, then rename.
 /// @throws UnusableInput  the file cannot be written

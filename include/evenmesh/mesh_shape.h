@@ -12,6 +12,7 @@
 #include "evenmesh/mesh.h"
 #include "evenmesh/run.h"
 #include "evenmesh/shape.h"
+#include "evenmesh/volume.h"
 
 namespace evenmesh {
 
@@ -21,6 +22,9 @@ enum class Method { automatic, raster, shell };
 enum class Quality { fast, normal, high };
 enum class Optimizer { lbfgs, lloyd };
 enum class Start { random, blue_noise, coarse_to_fine };
+/// How cells are told apart before they become triangles: by the nearest seed, disconnected pieces becoming cells of
+/// their own; or by the seed that reaches them along the surface.
+enum class Connect { complex, flood };
 enum class Placement { centroid, constrained, quadric };
 
 /// What the mesh shall be like. Nothing in here depends on the machine.
@@ -38,11 +42,14 @@ struct MeshOptions {
   Quality quality = Quality::normal;    ///< effort of the optimization
   Optimizer optimizer = Optimizer::lbfgs;
   Start start = Start::coarse_to_fine;
+  Connect connect = Connect::complex;
   Placement placement = Placement::quadric;
   std::optional<std::size_t>
-      iterations{};         ///< evaluations of the energy per level at most, [0, 10000]; default by quality
-  double tolerance = 1e-4;  ///< stop when the mean seed moves less than this share of the seed spacing, (0, 1)
-  std::uint64_t seed = 1;   ///< of the random numbers
+      iterations{};             ///< evaluations of the energy per level at most, [0, 10000]; default by quality
+  double tolerance = 1e-4;      ///< stop when the mean seed moves less than this share of the seed spacing, (0, 1)
+  std::uint64_t seed = 1;       ///< of the random numbers
+  bool keep_shell = false;      ///< return the shell's voxels
+  bool keep_shell_cut = false;  ///< return one layer of them, for pictures
 };
 
 /// A promise that could not be kept, or something the user should know.
@@ -70,7 +77,7 @@ struct Report {
   std::size_t shell_voxels = 0;        ///< shell: voxels within the thickness
   unsigned thickness = 0;              ///< shell: half its width in voxels
   std::size_t sheets = 0;              ///< shell: connected pieces of surface
-  std::size_t cuts = 0;  ///< shell: sheets that had to end where others meet them, and vertices that were split
+  std::size_t cuts = 0;          ///< shell: sheets that had to end where others meet them, and vertices that were split
   std::size_t merges = 0;        ///< shell: gaps between sheets that it fills, hiding surface
   unsigned thickness_apart = 0;  ///< shell: the largest thickness that fills none of them; 0: the voxels are too large
   std::size_t inserted_seeds = 0;  ///< added because the topology needed them
@@ -83,6 +90,10 @@ struct Report {
 struct MeshResult {
   Mesh mesh;
   Report report;
+  /// The voxels of the shell, when asked for and made; values: exact distance from the nearest voxel that the surface
+  /// touches, centre to centre, model units.
+  SparseVolume shell;
+  SparseVolume shell_cut;  ///< of these the middle layer across the shortest side of the bounds
 };
 
 /// Samples a shape's surface, spreads seeds evenly over it (centroidal Voronoi tessellation) and connects them.

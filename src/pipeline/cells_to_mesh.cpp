@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "connect/flood.h"
 #include "connect/pinches.h"
 #include "connect/surface_parts.h"
 #include "cvt/starts.h"
@@ -88,6 +89,7 @@ class Cells {
   void connect() {
     stages_.stage("connect", 0.1, [&] {
       evaluator_->nearest(seeds_, labels_);
+      if (options_.connect == Connect::flood) flood_labels(samples_, labels_, seeds_, run_);
       complex_ = connect_labels(samples_, labels_, seeds_, run_);
       for (const CellPiece& piece : complex_.pieces) seeds_.push_back(piece.centroid);
     });

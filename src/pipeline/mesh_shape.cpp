@@ -89,7 +89,8 @@ class Job {
     stages_.stage("refine", 0.05, [&] { refine(mesh, cells.labels); });
     stages_.stage("measure", 0.05, [&] { finish(mesh, cells.two_manifold); });
     run_.report("done", 1);
-    return {std::move(mesh), std::move(report_)};
+    result_.mesh = std::move(mesh);
+    return std::move(result_);
   }
 
  private:
@@ -114,14 +115,14 @@ class Job {
   }
 
   ConnectedCells cells_of_sheets() {
-    ShellSampling sampling = sample_by_shell(shape_, options_, stages_, report_, run_);
+    ShellSampling sampling = sample_by_shell(shape_, options_, stages_, result_, run_);
     ConnectedCells cells = connect_shell(sampling, options_, stages_, report_, run_);
     samples_ = std::move(sampling.on_surface);
     return cells;
   }
   ConnectedCells cells_of_solid() {
     if (options_.wrap)
-      samples_ = sample_wrapping(shape_, options_, stages_, report_, run_);
+      samples_ = sample_wrapping(shape_, options_, stages_, result_, run_);
     else
       sample();
     return balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
@@ -286,7 +287,8 @@ class Job {
   Shape shape_;
   const MeshOptions& options_;
   Run& run_;
-  Report report_;
+  MeshResult result_;
+  Report& report_ = result_.report;
   Stages stages_;
   bool by_shell_;
   SampleSet samples_;

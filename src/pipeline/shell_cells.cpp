@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "connect/flood.h"
 #include "geometry/half_edges.h"
 #include "pipeline/fineness.h"
 #include "pipeline/mend.h"
@@ -14,7 +15,8 @@ namespace evenmesh {
 namespace {
 
 constexpr int topology_rounds = 12;
-constexpr double shell_effort = 1.7;  ///< of balancing, a small part of the time here: Q 0.005 higher for 10 % more of it
+constexpr double shell_effort =
+    1.7;  ///< of balancing, a small part of the time here: Q 0.005 higher for 10 % more of it
 
 class ShellCells {
  public:
@@ -56,6 +58,7 @@ class ShellCells {
       evaluator_.nearest(seeds_, labels_);
       std::vector<std::uint32_t> all(sampling_.surface.samples.size(), no_label);
       for (std::size_t i = 0; i < labels_.size(); ++i) all[sampling_.in_surface[i]] = labels_[i];
+      if (options_.connect == Connect::flood) flood_labels(sampling_.surface.samples, all, seeds_, run_);
       complex_ = connect_labels(sampling_.surface.samples, all, seeds_, run_);
       for (std::size_t i = 0; i < labels_.size(); ++i) labels_[i] = all[sampling_.in_surface[i]];
       for (const CellPiece& piece : complex_.pieces) seeds_.push_back(piece.centroid);

@@ -173,7 +173,8 @@ void sample_well(ShellPlan plan, bool may_refine, const Sample& sample) {
 }
 
 /// Counts the gaps that hide surface (elsewhere it is still seen from its other side); returns the narrowest.
-std::optional<FilledGap> report_gaps(std::vector<FilledGap> gaps, const ShellSampling& sampling, std::size_t sites, Report& report) {
+std::optional<FilledGap> report_gaps(std::vector<FilledGap> gaps, const ShellSampling& sampling, std::size_t sites,
+                                     Report& report) {
   std::vector<char> seen(sites, 0);
   for (const std::uint32_t i : sampling.in_surface) seen[sampling.surface.site[i]] = 1;
   std::erase_if(gaps, [&](const FilledGap& gap) {
@@ -198,13 +199,45 @@ Notice merge_notice(const FilledGap& narrowest, const Report& report) {
     cure = fmt::format("-r {:.0f} --thickness 1 keeps them apart", finer);
   }
   const Vec3& at = narrowest.middle;
-  return {false, fmt::format("sheets that come within {:.3g} of each other merge in {} places, first at ({:.4g}, {:.4g}, "
-                             "{:.4g}): {}",
-                             narrowest.width, report.merges, at.x, at.y, at.z, cure)};
+  return {false,
+          fmt::format("sheets that come within {:.3g} of each other merge in {} places, first at ({:.4g}, {:.4g}, "
+                      "{:.4g}): {}",
+                      narrowest.width, report.merges, at.x, at.y, at.z, cure)};
 }
 
-ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& stages, Report& report,
-                            std::optional<FilledGap>& narrowest, Run& run) {
+/// Fills in result.shell and result.shell_cut as far as asked for.
+void keep_shell(const Shell& shell, const Box& bounds, const MeshOptions& options, MeshResult& result) {
+  const VoxelGrid& grid = shell.grid();
+  const SparseVolume empty{.name = "distance",
+                           .origin = grid.center({0, 0, 0}),
+                           .side = grid.side,
+                           .background = static_cast<float>(grid.side * (shell.reach() + 1))};
+  result.shell = result.shell_cut = empty;
+  const Vec3 size = bounds.size(), middle = (bounds.center() - grid.origin) / grid.side;
+  const std::size_t across = size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2;
+  const auto layer = static_cast<std::int32_t>(middle[static_cast<int>(across)]);
+  const auto add = [&](SparseVolume& volume, const Voxel& at, NearestSite nearest) {
+    volume.voxels.push_back(at);
+    volume.values.push_back(static_cast<float>(grid.side * std::sqrt(nearest.squared_distance())));
+  };
+  for (std::size_t t = 0; t < shell.tiles().size(); ++t) {
+    const Voxel corner = shell.tiles()[t].corner();
+    const bool in_cut =
+        options.keep_shell_cut && corner[across] / std::int32_t{tile_size} == layer / std::int32_t{tile_size};
+    if (!options.keep_shell && !in_cut) continue;
+    const NearestSite* nearest = shell.nearest(t).data();
+    for_each_voxel(shell.tiles()[t], [&](unsigned x, unsigned y, unsigned z) {
+      const Voxel at{corner[0] + std::int32_t(x), corner[1] + std::int32_t(y), corner[2] + std::int32_t(z)};
+      if (options.keep_shell) add(result.shell, at, *nearest);
+      if (in_cut && at[across] == layer) add(result.shell_cut, at, *nearest);
+      ++nearest;
+    });
+  }
+}
+
+ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& stages, const MeshOptions& options,
+                            MeshResult& result, std::optional<FilledGap>& narrowest, Run& run) {
+  Report& report = result.report;
   const SiteVoxels sites = stages.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, run); });
   if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
   ShellSampling sampling;
@@ -212,6 +245,7 @@ ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& s
   stages.stage("shell", 0.1, [&] {
     const Shell shell = build_shell(sites, plan.thickness, run);
     report.shell_voxels = shell.size();
+    keep_shell(shell, shape.bounds, options, result);
     sampling.surface = shell_surface(shell, sites, run);
     gaps = filled_gaps(shell, sites, run);
   });
@@ -235,12 +269,15 @@ ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& s
   return sampling;
 }
 
-SampleSet sample_enclosed(const Shape& shape, const ShellPlan& plan, Stages& stages, Report& report, Run& run) {
+SampleSet sample_enclosed(const Shape& shape, const ShellPlan& plan, Stages& stages, const MeshOptions& options,
+                          MeshResult& result, Run& run) {
+  Report& report = result.report;
   const SiteVoxels sites = stages.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, run); });
   if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
   SampleSet samples = stages.stage("shell", 0.1, [&] {
     const Shell shell = build_shell(sites, plan.thickness, run);
     report.shell_voxels = shell.size();
+    keep_shell(shell, shape.bounds, options, result);
     const ShellSurface surface = shell_surface(shell, sites, run);
     const SiteVoxels border = outer_border(surface, outer_sheets(surface, run), sites.grid, run);
     return enclosed_by(shell_surface(build_shell(border, plan.thickness - 1, run), border, run), run);
@@ -262,14 +299,15 @@ void limit_seeds(Report& report) {
 
 }  // namespace
 
-ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report,
+ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, MeshResult& result,
                               Run& run) {
+  Report& report = result.report;
   const ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
   ShellSampling sampling;
   std::optional<FilledGap> narrowest;
   sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
     sampling = {};  // frees the memory first
-    sampling = sample_sheets(shape, p, stages, report, narrowest, run);
+    sampling = sample_sheets(shape, p, stages, options, result, narrowest, run);
     return sampling.samples.size();
   });
   limit_seeds(report);
@@ -280,14 +318,16 @@ ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, St
   return sampling;
 }
 
-SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report, Run& run) {
+SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, MeshResult& result,
+                          Run& run) {
+  Report& report = result.report;
   ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
   plan.thickness = std::max(plan.thickness, 2u);
   if (plan.bridge > 0) plan.bridge = std::max(plan.bridge, plan.thickness);
   SampleSet samples;
   sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
     samples = {};
-    samples = sample_enclosed(shape, p, stages, report, run);
+    samples = sample_enclosed(shape, p, stages, options, result, run);
     return samples.size();
   });
   limit_seeds(report);

@@ -15,7 +15,7 @@ constexpr double most_lift = 0.2;        ///< of the edge length
 constexpr double among_the_worst = 0.8;  ///< of the largest deviation: what a round looks at
 constexpr int most_rounds = 16;
 constexpr int most_rounds_inexact = 4;  ///< on samples off the surface: later rounds only cost quality
-constexpr int most_shakes = 2;  ///< rounds around the worst where nothing helps there
+constexpr int most_shakes = 2;          ///< rounds around the worst where nothing helps there
 constexpr std::size_t samples_per_cell = 20;
 
 /// Samples of every vertex' cell: some, or all where it matters.

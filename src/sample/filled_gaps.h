@@ -10,9 +10,9 @@ namespace evenmesh {
 
 /// A connected part of the space between two sheets of surface, or two parts of one, that face each other.
 struct FilledGap {
-  double width = 0;         ///< where the sheets come nearest, model units
-  unsigned kept_apart = 0;  ///< d of the thickest shell that would not fill it; 0: none does
-  Vec3 middle;              ///< somewhere in the gap
+  double width = 0;                  ///< where the sheets come nearest, model units
+  unsigned kept_apart = 0;           ///< d of the thickest shell that would not fill it; 0: none does
+  Vec3 middle;                       ///< somewhere in the gap
   std::vector<std::uint32_t> sites;  ///< on both of its sides, ascending
 };
 

@@ -6,6 +6,7 @@
 #include "view/base64.h"
 #include "view/charts.h"
 #include "view/lit_mesh.h"
+#include "view/shell_cut.h"
 
 namespace evenmesh {
 namespace {
@@ -99,16 +100,20 @@ std::string tiles_html(const Report& report) {
   return "<div class=\"tiles\">" + html + "</div>";
 }
 
+std::string picture(const Image& image, const char* what, const std::string& caption) {
+  return fmt::format(
+      "<figure><img alt=\"{}\" width=\"{}\" height=\"{}\" src=\"data:image/png;base64,{}\">"
+      "<figcaption>{}</figcaption></figure>",
+      what, image.width, image.height, base64(encode_png(image)), caption);
+}
+
 /// Draws one mesh several times; its light is computed once.
 class Gallery {
  public:
   Gallery(const Mesh& mesh, Run& run) : mesh_(mesh), run_(run), lit_(light_mesh(mesh, run)) {}
 
   std::string figure(const RenderOptions& options, const char* caption) const {
-    return fmt::format(
-        "<figure><img alt=\"the mesh\" width=\"{}\" height=\"{}\" src=\"data:image/png;base64,{}\">"
-        "<figcaption>{}</figcaption></figure>",
-        options.width, options.height, base64(encode_png(render_lit(mesh_, lit_, options, run_))), caption);
+    return picture(render_lit(mesh_, lit_, options, run_), "the mesh", caption);
   }
 
  private:
@@ -128,6 +133,17 @@ std::string pictures_html(const Mesh& mesh, Run& run) {
   html += gallery.figure({.width = width, .height = height, .quality_colours = true},
                          "quality Q 0.5<i class=\"ramp\"></i>1");
   return "<div class=\"pictures\">" + html + "</div>";
+}
+
+std::string shell_html(const MeshResult& result) {
+  if (result.shell_cut.voxels.empty()) return {};
+  constexpr int width = 680;
+  constexpr double window = 48;
+  const auto cut = [&](double voxels) { return shell_cut_image(result.shell_cut, result.mesh, width, voxels); };
+  return "<div class=\"pictures\">" +
+         picture(cut(0), "cut through the shell",
+                 "a cut through the shell of voxels, darkest where the surface passes; red: the mesh") +
+         picture(cut(window), "cut through the shell, enlarged", fmt::format("{} voxels of it", window)) + "</div>";
 }
 
 std::string charts_html(const MeshResult& result) {
@@ -196,7 +212,8 @@ std::string report_html(const MeshResult& result, const std::string& title, Run&
   html += name + " – evenmesh</title>\n" + style + "</head><body><main>\n";
   html += "<h1>" + name + "</h1><p class=\"lead\">Mesh report by evenmesh</p>\n";
   html += notices_html(result.report) + tiles_html(result.report) + "\n";
-  if (!result.mesh.triangles.empty()) html += pictures_html(result.mesh, run) + "\n" + charts_html(result) + "\n";
+  if (!result.mesh.triangles.empty())
+    html += pictures_html(result.mesh, run) + "\n" + shell_html(result) + charts_html(result) + "\n";
   html += tables_html(result.report) + "\n</main></body></html>\n";
   return html;
 }

@@ -225,6 +225,29 @@ TEST_F(Jobs, MeshesOpenSheets) {
   EXPECT_EQ(Json::parse(info("s.ply")).at("euler"), 2);
 }
 
+TEST_F(Jobs, WritesTheShellAndItsCut) {
+  const Outcome outcome = run({"mesh", "gallery:sphere", "-n", "100", "--method", "shell", "-o", "s.ply",
+                               "--dump-shell", "s.vdb", "--report", "s.html", "--connect", "flood", "-q"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(names(), (Words{"s.html", "s.ply", "s.vdb"}));
+  EXPECT_GT(read("s.vdb").size(), 10'000u);
+  EXPECT_NE(read("s.html").find("cut through the shell"), std::string::npos);
+}
+
+TEST_F(Jobs, LeavesOutliersOutOnRequest) {
+  std::string points;
+  for (int i = 0; i < 1000; ++i) {
+    const double z = 1 - (i + 0.5) / 500, r = std::sqrt(1 - z * z), turn = 2.39996 * i;
+    points +=
+        std::to_string(r * std::cos(turn)) + " " + std::to_string(r * std::sin(turn)) + " " + std::to_string(z) + "\n";
+  }
+  write("ball.xyz", points + "2 2 2\n-2 1 2\n");
+  const Outcome outcome = run({"mesh", "ball.xyz", "-n", "200", "-o", "ball.ply", "--outliers", "3"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("2 of 1002 points left out"), std::string::npos) << outcome.err;
+  EXPECT_EQ(Json::parse(info("ball.ply")).at("euler"), 2);
+}
+
 TEST_F(Jobs, ListsTheGallery) {
   const Outcome text = run({"gallery"});
   EXPECT_EQ(text.status, 0);

@@ -31,11 +31,11 @@ TEST_F(Usage, HelpListsEveryCommand) {
 TEST_F(Usage, HelpOfMeshDescribesEveryOptionOnce) {
   const std::string help = run({"mesh", "--help"}).out;
   for (const char* option :
-       {"--output",      "--vertices",  "--edge-length", "--error",      "--method",     "--resolution", "--thickness",
-        "--bounds",      "--quality",   "--optimizer",   "--iterations", "--tolerance",  "--start",      "--seed",
-        "--connect",     "--topology",  "--features",    "--density",    "--threads",    "--backend",    "--report",
-        "--json",        "--quiet",     "--verbose",     "--progress",   "--expression", "--define",     "--entry",
-        "--dump-dexels", "--placement", "--max-cycle",   "--format"}) {
+       {"--output",      "--vertices",   "--edge-length", "--error",      "--method",     "--resolution", "--thickness",
+        "--bounds",      "--quality",    "--optimizer",   "--iterations", "--tolerance",  "--start",      "--seed",
+        "--connect",     "--topology",   "--features",    "--density",    "--threads",    "--backend",    "--report",
+        "--json",        "--quiet",      "--verbose",     "--progress",   "--expression", "--define",     "--entry",
+        "--dump-dexels", "--dump-shell", "--outliers",    "--placement",  "--max-cycle",  "--format"}) {
     const std::size_t first = help.find(std::string(option) + " ");
     ASSERT_TRUE(first != std::string::npos || help.find(std::string(option) + "\n") != std::string::npos) << option;
   }
@@ -94,6 +94,9 @@ TEST_F(Usage, WrongUsageIsStatus2) {
       {{"mesh", in, "-o", "x.ply", "--quality", "best"}, "fast, normal, high"},
       {{"mesh", in, "-o", "x.ply", "--method", "shells"}, "auto, raster, shell"},
       {{"mesh", in, "-o", "x.ply", "--thickness", "21"}, "between 1 and 20"},
+      {{"mesh", in, "-o", "x.ply", "--outliers", "-1"}, "--outliers"},
+      {{"mesh", in, "-o", "x.ply", "--outliers", "3"}, "--outliers is for points"},
+      {{"mesh", in, "-o", "x.ply", "--dump-shell", "x.vdb"}, "add --method shell"},
       {{"mesh", in, "-o", "x.ply", "--start", "cold"}, "--start"},
       {{"mesh", in, "-o", "x.ply", "--seed", "-1"}, "--seed"},
       {{"mesh", in, "-o", "x.ply", "--bounds", "0,0,0,1,1"}, "6 numbers"},
@@ -136,9 +139,9 @@ TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
     expect_one_sentence(outcome, "not available in this version");
   }
   const std::vector<Words> options{
-      {"--connect", "fragments"}, {"--connect", "flood"},     {"--topology", "simplify"}, {"--features", "auto"},
-      {"--features", "40"},       {"--density", "curvature"}, {"--density", "1+x"},       {"--backend", "gl"},
-      {"--error", "0.001"},       {"--max-cycle", "5"},       {"--dump-dexels", "a.tdx"}, {"--entry", "map"},
+      {"--connect", "fragments"}, {"--topology", "simplify"}, {"--features", "auto"}, {"--features", "40"},
+      {"--density", "curvature"}, {"--density", "1+x"},       {"--backend", "gl"},    {"--error", "0.001"},
+      {"--max-cycle", "5"},       {"--dump-dexels", "a.tdx"}, {"--entry", "map"},
   };
   for (const Words& option : options) {
     SCOPED_TRACE(testing::PrintToString(option));

@@ -30,9 +30,9 @@ const std::map<std::string, Names> beside{
 
 /// Public headers, and the room from which on they may be included.
 const std::map<std::string, std::string> public_headers{
-    {"error.h", "core"},          {"run.h", "core"},        {"mesh.h", "geometry"},
-    {"shape.h", "shape"},         {"measure.h", "measure"}, {"io.h", "io"},
-    {"mesh_shape.h", "pipeline"}, {"render.h", "view"},     {"points.h", "geometry"},
+    {"error.h", "core"},      {"run.h", "core"},        {"mesh.h", "geometry"},       {"shape.h", "shape"},
+    {"measure.h", "measure"}, {"io.h", "io"},           {"mesh_shape.h", "pipeline"}, {"render.h", "view"},
+    {"points.h", "geometry"}, {"volume.h", "geometry"},
 };
 
 Names visible_from(const std::string& room) {

@@ -137,6 +137,26 @@ TEST(ShellMethod, SaysWhichThicknessKeepsSheetsApart) {
   }));
 }
 
+TEST(ShellMethod, GivesTheShellWhenAsked) {
+  MeshOptions options = by_shell(100, 30);
+  options.keep_shell = options.keep_shell_cut = true;
+  for (const bool wrap : {false, true}) {
+    options.wrap = wrap;
+    const MeshResult result = meshed(shape_from_mesh(make_icosphere(3)), options);
+    EXPECT_EQ(result.shell.voxels.size(), result.report.shell_voxels);
+    ASSERT_EQ(result.shell.values.size(), result.shell.voxels.size());
+    for (std::size_t i = 0; i < result.shell.voxels.size(); ++i) {
+      const auto& v = result.shell.voxels[i];
+      const Vec3 p = result.shell.origin + result.shell.side * Vec3(v[0], v[1], v[2]);
+      EXPECT_NEAR(result.shell.values[i], std::abs(norm(p) - 1), 1.2 * result.shell.side);
+    }
+    const std::size_t cut = result.shell_cut.voxels.size();
+    EXPECT_GT(cut, 50u);
+    EXPECT_LT(cut, result.shell.voxels.size() / 8);
+  }
+  EXPECT_TRUE(meshed(shape_from_mesh(make_icosphere(3)), by_shell(100, 30)).shell.voxels.empty());
+}
+
 TEST(ShellMethod, ThinWallsHideNothing) {
   // The shell fills the wall, but its outside is seen: nothing to warn of.
   const MeshResult result = meshed(shape_from_mesh(make_box({1, 1, 0.04}, 4)), by_shell(400, 60));

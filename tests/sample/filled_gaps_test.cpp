@@ -47,8 +47,12 @@ TEST(FilledGaps, CreasesAndHolesAreNone) {
   Mesh holed = make_icosphere(4);
   holed.triangles.resize(holed.triangles.size() - 30);
   const double tilt = 0.35;  // a roof of 40°
-  const Mesh roof{{{0, 0, 0}, {0, 2, 0}, {std::sin(tilt), 2, -std::cos(tilt)}, {std::sin(tilt), 0, -std::cos(tilt)},
-                   {-std::sin(tilt), 2, -std::cos(tilt)}, {-std::sin(tilt), 0, -std::cos(tilt)}},
+  const Mesh roof{{{0, 0, 0},
+                   {0, 2, 0},
+                   {std::sin(tilt), 2, -std::cos(tilt)},
+                   {std::sin(tilt), 0, -std::cos(tilt)},
+                   {-std::sin(tilt), 2, -std::cos(tilt)},
+                   {-std::sin(tilt), 0, -std::cos(tilt)}},
                   {{0, 1, 2}, {0, 2, 3}, {1, 0, 5}, {1, 5, 4}}};
   for (const Mesh& mesh : {box, holed, roof})
     for (const unsigned d : {1u, 2u, 4u}) {

@@ -3,6 +3,7 @@
 #include "evenmesh/render.h"
 #include "geometry/primitives.h"
 #include "view/charts.h"
+#include "view/shell_cut.h"
 
 namespace evenmesh {
 namespace {
@@ -29,6 +30,29 @@ std::size_t count_of(const std::string& text, const std::string& what) {
   std::size_t count = 0;
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
   return count;
+}
+
+TEST(Report, ShowsACutThroughTheShell) {
+  MeshResult result = example();
+  SparseVolume& cut = result.shell_cut;
+  cut.side = 0.1;
+  for (std::int32_t i = -12; i <= 12; ++i)
+    for (std::int32_t j = -12; j <= 12; ++j)
+      if (const double off = std::abs(std::hypot(i, j) - 10); off < 2)
+        cut.voxels.push_back({i, 0, j}), cut.values.push_back(static_cast<float>(0.1 * off));
+  EXPECT_EQ(count_of(report_html(result, "shell"), "src=\"data:image/png;base64,iVBORw0KGgo"), 5u);
+  for (const double window : {0.0, 8.0}) {
+    const Image image = shell_cut_image(cut, result.mesh, 300, window);
+    EXPECT_EQ(image.width, 300);
+    EXPECT_NEAR(image.height, 300, 2);
+    std::size_t red = 0, white = 0;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+      red += image.rgb[i] == 0xd8 && image.rgb[i + 1] == 0x35;
+      white += image.rgb[i] == 255 && image.rgb[i + 2] == 255;
+    }
+    EXPECT_GT(red, 200u) << "the mesh's section";
+    EXPECT_GT(white, 1000u);
+  }
 }
 
 TEST(Report, IsOneSelfContainedPage) {
