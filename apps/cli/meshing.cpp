@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "command.h"
@@ -35,7 +36,7 @@ void refuse_planned_options(const MeshingArguments& a) {
     if (a.features != "auto") real_number("--features", a.features, 0, 180);
     not_available("--features " + a.features);
   }
-  if (a.density != "uniform") not_available("--density " + a.density);
+  if (a.density == "curvature" || std::filesystem::exists(a.density)) not_available("--density " + a.density);
 }
 
 MeshOptions mesh_options(const MeshingArguments& a) {
@@ -69,6 +70,7 @@ MeshOptions mesh_options(const MeshingArguments& a) {
           fmt::format("--tolerance takes a number above 0 and below 1; {} is out of range", a.tolerance));
     }
   }
+  if (a.density != "uniform") options.density = density_from_expression(a.density, a.input.parameters);
   options.seed = whole_number("--seed", a.seed, 0);
   return options;
 }

@@ -25,7 +25,8 @@ void add_what(CLI::App& app, MeshingArguments& a) {
   option("--topology", a.topology, "keep",
          "keep: add vertices where the topology needs them (simplify: not available)");
   option("--features", a.features, "off", "sharp edges: off (auto, ANGLE: not available)");
-  option("--density", a.density, "uniform", "sizing: uniform (curvature, FILE, EXPR: not available)");
+  option("--density", a.density, "uniform",
+         "vertices per area: uniform, or EXPR in x, y, z, compared with elsewhere\n(curvature, FILE: not available)");
 }
 
 void add_effort(CLI::App& app, MeshingArguments& a) {

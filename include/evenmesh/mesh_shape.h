@@ -38,6 +38,7 @@ struct MeshOptions {
   std::optional<unsigned> thickness{};  ///< half width d of the shell in voxels, [1, 20]: holes and gaps narrower than
                                         ///< 2d are bridged; default 2, for point clouds by their spacing
   bool wrap = false;                    ///< a closed mesh one voxel around the surface instead, by the shell
+  Density density{};                    ///< none: even. Smooth, and at most a hundred times its mean
   std::optional<Box> bounds{};          ///< replaces the shape's own; a surface cut by it is capped
   Quality quality = Quality::normal;    ///< effort of the optimization
   Optimizer optimizer = Optimizer::lbfgs;

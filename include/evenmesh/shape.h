@@ -62,6 +62,14 @@ Shape shape_from_points(PointCloud points, std::string name = "points");
 Shape shape_from_expression(std::string_view expression, const std::map<std::string, double>& parameters = {},
                             const Box& bounds = {});
 
+/// How many vertices are wanted per area around a point, compared with elsewhere: above 0 and finite. Callable from
+/// several threads at once.
+using Density = std::function<double(const Vec3&)>;
+
+/// An expression in x, y, z as shape_from_expression() reads it, as a density.
+/// @throws InvalidInput  with the column (1-based) and a caret under it
+Density density_from_expression(std::string_view expression, const std::map<std::string, double>& parameters = {});
+
 /// The solid where inside(p) is true. Normals are estimated from neighbouring samples.
 /// @param inside  must be callable from several threads at once
 /// @throws InvalidInput if bounds are empty

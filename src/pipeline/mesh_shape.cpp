@@ -17,6 +17,7 @@
 #include "refine/polish.h"
 #include "refine/projector.h"
 #include "refine/untangle.h"
+#include "sample/density.h"
 #include "sample/sample.h"
 #include "shape/bounds.h"
 
@@ -137,6 +138,7 @@ class Job {
     const double h = samples_.grid.spacing, expected = scale.area * scale.samples_per_area / (h * h);
     const double surprise = static_cast<double>(samples_.size()) / expected;
     if (!options_.resolution && (surprise > 2 || surprise < 0.6)) sample_again(fineness);
+    weigh(fineness);
     if (scale.specks > 0 || surprise > 2) drop_specks(fineness.vertices);
     report_.seeds_asked = fineness.vertices;
     report_.resolution = fineness.resolution;
@@ -165,6 +167,19 @@ class Job {
       fineness.resolution = std::clamp<std::size_t>(static_cast<std::size_t>(better), 24, 8192);
       sample_at(fineness.resolution);
     }
+  }
+
+  /// Smaller cells need a finer grid.
+  void weigh(Fineness& fineness) {
+    if (!options_.density) return;
+    const auto weigh = [&] {
+      return stages_.stage("sample", 0, [&] { return weigh_by_density(samples_, options_.density, run_); });
+    };
+    const double finer = std::sqrt(std::min(16.0, weigh()));
+    if (options_.resolution || finer < 1.1) return;
+    fineness.resolution = std::min<std::size_t>(8192, static_cast<std::size_t>(finer * double(fineness.resolution)));
+    sample_at(fineness.resolution);
+    weigh();
   }
 
   /// Thousands of pieces smaller than a cell would keep seeds busy in vain.

@@ -12,6 +12,7 @@
 #include "pipeline/fineness.h"
 #include "sample/blocks.h"
 #include "sample/bridge_points.h"
+#include "sample/density.h"
 #include "sample/filled_gaps.h"
 
 namespace evenmesh {
@@ -287,6 +288,11 @@ SampleSet sample_enclosed(const Shape& shape, const ShellPlan& plan, Stages& sta
   return samples;
 }
 
+/// As many samples as an even mesh would need to have the same for its cells as the smallest have.
+std::size_t enough_for(double densest, std::size_t samples) {
+  return static_cast<std::size_t>(static_cast<double>(samples) / std::clamp(densest, 1.0, 16.0));
+}
+
 /// Fewer seeds when the samples cannot feed as many.
 void limit_seeds(Report& report) {
   const double most = std::max(4.0, std::floor(static_cast<double>(report.samples) / least_alpha));
@@ -308,7 +314,9 @@ ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, St
   sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
     sampling = {};  // frees the memory first
     sampling = sample_sheets(shape, p, stages, options, result, narrowest, run);
-    return sampling.samples.size();
+    if (!options.density) return sampling.samples.size();
+    weigh_by_density(sampling.on_surface, options.density, run);
+    return enough_for(weigh_by_density(sampling.samples, options.density, run), sampling.samples.size());
   });
   limit_seeds(report);
   if (narrowest && !shape.points()) report.notices.push_back(merge_notice(*narrowest, report));
@@ -328,7 +336,8 @@ SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages
   sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
     samples = {};
     samples = sample_enclosed(shape, p, stages, options, result, run);
-    return samples.size();
+    if (!options.density) return samples.size();
+    return enough_for(weigh_by_density(samples, options.density, run), samples.size());
   });
   limit_seeds(report);
   report.notices.push_back({false, fmt::format("the wrap lies about {:.3g} outside of the surface, and closes what is "

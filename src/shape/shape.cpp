@@ -93,6 +93,11 @@ Shape shape_from_expression(std::string_view expression, const std::map<std::str
   return Shape{std::string(expression), bounds, make_program_field(parse_expression(expression, parameters)), bounded};
 }
 
+Density density_from_expression(std::string_view expression, const std::map<std::string, double>& parameters) {
+  const Shape shape = shape_from_expression(expression, parameters, {{-1, -1, -1}, {1, 1, 1}});
+  return [shape](const Vec3& p) { return shape.field()->evaluate(p, nullptr); };
+}
+
 Shape shape_from_indicator(std::function<bool(const Vec3&)> inside, const Box& bounds, std::string name) {
   require_usable_bounds(bounds);
   if (!inside) throw InvalidInput("'" + name + "': the indicator function is missing");

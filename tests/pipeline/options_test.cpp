@@ -219,5 +219,33 @@ TEST(Reports, OfNothingAreJsonToo) {
   EXPECT_EQ(json["notices"][0]["promise_broken"], true);
 }
 
+TEST(Density, VerticesGatherWhereTheyAreWanted) {
+  // On a ball, three times as many per area at the top as at the bottom.
+  EXPECT_DOUBLE_EQ(density_from_expression("2 + a x", {{"a", 3}})({1, 2, 3}), 5);
+  for (const Method method : {Method::raster, Method::shell}) {
+    MeshOptions options{.vertices = 1500, .method = method, .quality = Quality::fast};
+    options.density = density_from_expression("2 + z");
+    const MeshResult result = meshed(shape_from_mesh(make_icosphere(4)), options);
+    expect_good_mesh(result);
+    EXPECT_GT(result.report.quality.q_avg, 0.9);
+    double wanted = 0, above = 0;
+    const std::size_t slices = 1000;
+    for (std::size_t i = 0; i < slices; ++i) {
+      const double z = -1 + 2 * (static_cast<double>(i) + 0.5) / slices;  // equal areas
+      wanted += 2 + z;
+      above += z > 0 ? 2 + z : 0;
+    }
+    const auto counted =
+        std::count_if(result.mesh.vertices.begin(), result.mesh.vertices.end(), [](const Vec3& v) { return v.z > 0; });
+    EXPECT_NEAR(static_cast<double>(counted) / static_cast<double>(result.mesh.vertices.size()), above / wanted, 0.03);
+  }
+}
+
+TEST(Density, MustBeAboveZero) {
+  MeshOptions options{.vertices = 100};
+  options.density = density_from_expression("z");
+  EXPECT_THROW(meshed(gallery_shape("sphere"), options), InvalidInput);
+}
+
 }  // namespace
 }  // namespace evenmesh
