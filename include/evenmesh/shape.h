@@ -1,6 +1,6 @@
 #pragma once
 /// What can be meshed: triangle meshes as solids, implicit expressions, indicator functions, point clouds, built-in
-/// shapes.
+/// shapes; solids made of these are in solid.h.
 
 #include <functional>
 #include <map>
@@ -17,14 +17,17 @@
 namespace evenmesh {
 
 class Field;
+struct Compound;
 
 /// Something with a surface. Cheap to copy.
 struct Shape {
   std::string name;  ///< for messages
   Box bounds;        ///< where the surface is sought, model units; empty: to be found (implicit shapes only)
   /// A triangle mesh is a solid by its winding number (non-zero = inside); a field is a solid where f < 0; a point
-  /// cloud is a surface without an inside.
-  std::variant<std::shared_ptr<const Mesh>, std::shared_ptr<const Field>, std::shared_ptr<const PointCloud>> what;
+  /// cloud is a surface without an inside; a compound is a solid made of others (solid.h).
+  std::variant<std::shared_ptr<const Mesh>, std::shared_ptr<const Field>, std::shared_ptr<const PointCloud>,
+               std::shared_ptr<const Compound>>
+      what;
   /// The solid leaves its bounds and is closed by them on purpose, or may be (then a cut is worth a warning).
   bool capped_by_bounds = false;
 
@@ -38,6 +41,10 @@ struct Shape {
   }
   const PointCloud* points() const {
     const auto* p = std::get_if<std::shared_ptr<const PointCloud>>(&what);
+    return p ? p->get() : nullptr;
+  }
+  const Compound* compound() const {
+    const auto* p = std::get_if<std::shared_ptr<const Compound>>(&what);
     return p ? p->get() : nullptr;
   }
 };

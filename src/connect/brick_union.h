@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "connect/brick_cubes.h"
+#include "sample/brick_cubes.h"
 #include "connect/union_find.h"
 #include "core/parallel.h"
 

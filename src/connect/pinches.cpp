@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "connect/brick_cubes.h"
+#include "sample/brick_cubes.h"
 
 namespace evenmesh {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "connect/cube_table.h"
+#include "sample/cube_table.h"
 #include "evenmesh/run.h"
 #include "sample/sample_set.h"
 

@@ -1,4 +1,4 @@
-#include "connect/brick_cubes.h"
+#include "sample/brick_cubes.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "connect/cube_table.h"
+#include "sample/cube_table.h"
 
 namespace evenmesh {
 namespace {

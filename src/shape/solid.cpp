@@ -1,0 +1,154 @@
+#include "evenmesh/solid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "evenmesh/error.h"
+#include "shape/affine_field.h"
+
+namespace evenmesh {
+namespace {
+
+void require_solid(const Shape& shape) {
+  if (shape.points())
+    throw InvalidInput("'" + shape.name +
+                       "' is a point cloud and has no inside: make a closed mesh of it first (wrap)");
+}
+
+Box united(Box box, const Box& other) {
+  if (other.empty()) return box;
+  box.add(other.lo), box.add(other.hi);
+  return box;
+}
+
+/// An empty box is one that is not known: everything.
+Box common(const Box& a, const Box& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  Box box;
+  for (int i = 0; i < 3; ++i) box.lo[i] = std::max(a.lo[i], b.lo[i]), box.hi[i] = std::min(a.hi[i], b.hi[i]);
+  return box;
+}
+
+Box bounds_of(const Compound& compound) {
+  Box box = compound.operands[0].bounds;
+  switch (compound.kind) {
+    case Compound::Kind::unite:
+      for (const Shape& operand : compound.operands) {
+        if (operand.bounds.empty()) return {};  // to be found
+        box = united(box, operand.bounds);
+      }
+      return box;
+    case Compound::Kind::intersect:
+      for (const Shape& operand : compound.operands) box = common(box, operand.bounds);
+      if (box.empty()) throw UnusableInput("the operands of an intersection lie apart: nothing is left");
+      return box;
+    case Compound::Kind::subtract:
+      return box;
+    case Compound::Kind::offset:
+      if (!box.empty() && compound.distance > 0)
+        for (int i = 0; i < 3; ++i) box.lo[i] -= compound.distance, box.hi[i] += compound.distance;
+      return box;
+  }
+  return box;
+}
+
+Shape compound(Compound::Kind kind, std::vector<Shape> operands, double distance, const std::string& name) {
+  for (const Shape& operand : operands) require_solid(operand);
+  Compound made{kind, std::move(operands), distance};
+  const bool known = std::all_of(made.operands.begin(), made.operands.end(),
+                                 [](const Shape& operand) { return !operand.bounds.empty(); });
+  const Box bounds =
+      known || kind != Compound::Kind::intersect || !made.operands[0].bounds.empty() ? bounds_of(made) : Box{};
+  return Shape{name, bounds, std::make_shared<const Compound>(std::move(made)), true};
+}
+
+Shape joined(Compound::Kind kind, std::vector<Shape> shapes, const char* name) {
+  if (shapes.empty()) throw InvalidInput(std::string(name) + " needs at least one operand");
+  if (shapes.size() == 1) {
+    require_solid(shapes[0]);
+    return std::move(shapes[0]);
+  }
+  return compound(kind, std::move(shapes), 0, name);
+}
+
+}  // namespace
+
+Shape unite(std::vector<Shape> shapes) {
+  return joined(Compound::Kind::unite, std::move(shapes), "union");
+}
+Shape intersect(std::vector<Shape> shapes) {
+  return joined(Compound::Kind::intersect, std::move(shapes), "intersection");
+}
+Shape subtract(Shape from, std::vector<Shape> what) {
+  what.insert(what.begin(), std::move(from));
+  return joined(Compound::Kind::subtract, std::move(what), "difference");
+}
+
+Shape offset(Shape shape, double distance) {
+  if (!std::isfinite(distance)) throw InvalidInput("the distance of an offset must be a finite number");
+  require_solid(shape);
+  if (distance == 0) return shape;
+  std::vector<Shape> operand;
+  operand.push_back(std::move(shape));
+  return compound(Compound::Kind::offset, std::move(operand), distance, "offset");
+}
+
+Shape closing(Shape shape, double radius) {
+  if (!(radius > 0)) throw InvalidInput("the radius of a closing must be above 0");
+  return offset(offset(std::move(shape), radius), -radius);
+}
+Shape opening(Shape shape, double radius) {
+  if (!(radius > 0)) throw InvalidInput("the radius of an opening must be above 0");
+  return offset(offset(std::move(shape), -radius), radius);
+}
+
+namespace {
+
+/// The factor of a transform that scales all directions alike.
+double even_scale(const Affine& transform) {
+  const double scale = std::cbrt(std::abs(transform.determinant()));
+  for (std::size_t i = 0; i < 3; ++i)
+    if (std::abs(norm(transform.column[i]) - scale) > 1e-6 * scale ||
+        std::abs(dot(transform.column[i], transform.column[(i + 1) % 3])) > 1e-6 * scale * scale)
+      throw InvalidInput("a transform that stretches directions differently cannot follow an offset: put it inside");
+  return scale;
+}
+
+Shape transformed_compound(const Shape& shape, const Affine& transform) {
+  const Compound& old = *shape.compound();
+  const double distance = old.kind == Compound::Kind::offset ? old.distance * even_scale(transform) : 0;
+  std::vector<Shape> operands;
+  for (const Shape& operand : old.operands) operands.push_back(transformed(operand, transform));
+  return compound(old.kind, std::move(operands), distance, shape.name);
+}
+
+}  // namespace
+
+Shape transformed(const Shape& shape, const Affine& transform) {
+  transform.inverse();  // complains where there is none
+  if (shape.compound()) return transformed_compound(shape, transform);
+  if (const PointCloud* given = shape.points()) {
+    PointCloud points = *given;
+    const Affine back = transform.inverse();
+    for (Vec3& p : points.points) p = transform(p);
+    for (Vec3& n : points.normals) n = {dot(back.column[0], n), dot(back.column[1], n), dot(back.column[2], n)};
+    return shape_from_points(std::move(points), shape.name);
+  }
+  if (const Mesh* given = shape.mesh()) {
+    Mesh mesh = *given;
+    for (Vec3& v : mesh.vertices) v = transform(v);
+    if (transform.determinant() < 0)
+      for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    return shape_from_mesh(std::move(mesh), shape.name);
+  }
+  Shape moved = shape;
+  auto field = std::get<std::shared_ptr<const Field>>(shape.what);
+  // The box that cuts the solid turns with it.
+  if (shape.capped_by_bounds && !shape.bounds.empty()) field = boxed_field(std::move(field), shape.bounds);
+  moved.bounds = transformed_box(shape.bounds, transform);
+  moved.what = transformed_field(std::move(field), transform);
+  return moved;
+}
+
+}  // namespace evenmesh
