@@ -77,6 +77,9 @@ using Density = std::function<double(const Vec3&)>;
 /// @throws InvalidInput  with the column (1-based) and a caret under it
 Density density_from_expression(std::string_view expression, const std::map<std::string, double>& parameters = {});
 
+/// A box. @throws InvalidInput if it is empty
+Shape shape_from_box(const Box& box, std::string name = "box");
+
 /// The solid where inside(p) is true. Normals are estimated from neighbouring samples.
 /// @param inside  must be callable from several threads at once
 /// @throws InvalidInput if bounds are empty

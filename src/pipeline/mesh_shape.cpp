@@ -7,6 +7,7 @@
 
 #include "connect/dual_polygons.h"
 #include "connect/surface_parts.h"
+#include "evenmesh/solid.h"
 #include "geometry/half_edges.h"
 #include "pipeline/cells_to_mesh.h"
 #include "pipeline/fineness.h"
@@ -103,16 +104,36 @@ class Job {
   }
 
   void find_shape_bounds() {
-    if (options_.bounds) {
+    if (options_.bounds && shape_.compound()) {
+      shape_ = intersect({shape_, shape_from_box(*options_.bounds)});
+    } else if (options_.bounds) {
       if (const Mesh* mesh = shape_.mesh(); mesh == nullptr || !contains(*options_.bounds, shape_.bounds))
         shape_.bounds = *options_.bounds;
     } else if (shape_.bounds.empty()) {
-      shape_.bounds = stages_.stage("sample", 0, [&] { return find_bounds(*shape_.field()); });
+      shape_.bounds = stages_.stage("sample", 0, [&] { return find_bounds(shape_); });
     }
+    if (shape_.compound()) tighten_bounds();
     const double longest = shape_.bounds.longest_side();
     if (longest > 0 && !(longest >= smallest_model && longest <= largest_model))
       throw UnusableInput(fmt::format("the longest side measures {:.3g}: scale it to lie between {:g} and {:g}",
                                       longest, smallest_model, largest_model));
+  }
+
+  /// Booleans leave less than their operands' boxes.
+  void tighten_bounds() {
+    stages_.stage("sample", 0.02, [&] {
+      constexpr std::size_t coarse = 96;
+      const SampleSet samples = sample_shape(shape_, make_grid(shape_.bounds, coarse), run_);
+      Box box;
+      for (const SampleBlock& block : samples.blocks)
+        for (std::uint32_t s = block.begin; s < block.end; ++s)
+          box.add(samples.block_center(block) + Vec3{samples.x[s], samples.y[s], samples.z[s]});
+      const double h = 1.5 * samples.grid.spacing;
+      for (int a = 0; a < 3; ++a) {
+        shape_.bounds.lo[a] = std::max(shape_.bounds.lo[a], box.lo[a] - h);
+        shape_.bounds.hi[a] = std::min(shape_.bounds.hi[a], box.hi[a] + h);
+      }
+    });
   }
 
   ConnectedCells cells_of_sheets() {
@@ -216,7 +237,7 @@ class Job {
     separate(mesh);
     edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
     if (options_.placement != Placement::centroid && !options_.wrap) {
-      projector_ = make_projector(shape_, shape_.bounds, run_);
+      projector_ = shape_.compound() ? make_projector(samples_) : make_projector(shape_, shape_.bounds, run_);
       if (!cells.balls.balls().empty())
         projector_ = std::make_unique<RegularizedProjector>(std::move(projector_), cells.balls);
       if (projector_)

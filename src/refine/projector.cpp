@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "geometry/closest_point.h"
+#include "sample/morton.h"
 #include "shape/field.h"
 
 namespace evenmesh {
@@ -85,7 +87,79 @@ class FieldProjector : public Projector {
   Box bounds_;
 };
 
+class SampleProjector : public Projector {
+ public:
+  explicit SampleProjector(const SampleSet& samples) : samples_(samples) {
+    for (std::uint32_t b = 0; b < samples.blocks.size(); ++b) {
+      const auto& at = samples.blocks[b].brick;
+      codes_.push_back({morton_code(at[0], at[1], at[2]), b});
+    }
+  }
+  Vec3 project(const Vec3& p, double limit) const override {
+    Nearest nearest;
+    nearest.squared_distance = limit * limit;
+    search(p, nearest);
+    if (!nearest.found) return p;
+    const Vec3 q = p - dot(p - nearest.position, nearest.normal) * nearest.normal;
+    return squared_norm(q - p) <= limit * limit ? q : p;
+  }
+
+ private:
+  struct Nearest {
+    double squared_distance = 0;
+    bool found = false;
+    Vec3 position, normal;
+  };
+
+  /// The brick that holds p first, then those around it that may hold a nearer sample.
+  void search(const Vec3& p, Nearest& nearest) const {
+    const Vec3 at = (p - samples_.grid.origin) / (samples_.grid.spacing * brick_size);
+    std::array<int, 3> home{};
+    for (int a = 0; a < 3; ++a) home[std::size_t(a)] = static_cast<int>(std::floor(at[a]));
+    search_brick(p, home, nearest);
+    for (int reach = 1;; ++reach) {
+      // A sample in the ring lies at least so far away; edges reach one cell beyond their brick.
+      const double least = (reach - 1 - 1.0 / brick_size) * brick_size * samples_.grid.spacing;
+      if (least > 0 && least * least >= nearest.squared_distance) return;
+      if (reach > 64) return;
+      for (int k = -reach; k <= reach; ++k)
+        for (int j = -reach; j <= reach; ++j)
+          for (int i = -reach; i <= reach; i += std::max(std::abs(j), std::abs(k)) == reach ? 1 : 2 * reach)
+            search_brick(p, {home[0] + i, home[1] + j, home[2] + k}, nearest);
+    }
+  }
+  void search_brick(const Vec3& p, const std::array<int, 3>& brick, Nearest& nearest) const {
+    if (brick[0] < 0 || brick[1] < 0 || brick[2] < 0) return;
+    // Nothing of the brick may be nearer than what is known.
+    double away = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double lo = samples_.grid.origin[a] + samples_.grid.spacing * brick_size * brick[std::size_t(a)];
+      const double hi = lo + samples_.grid.spacing * (brick_size + 1), d = std::max({0.0, lo - p[a], p[a] - hi});
+      away += d * d;
+    }
+    if (away >= nearest.squared_distance) return;
+    const std::uint64_t code = morton_code(std::uint64_t(brick[0]), std::uint64_t(brick[1]), std::uint64_t(brick[2]));
+    const auto found = std::lower_bound(codes_.begin(), codes_.end(), std::pair(code, std::uint32_t{0}));
+    if (found == codes_.end() || found->first != code) return;
+    const SampleBlock& block = samples_.blocks[found->second];
+    const Vec3 center = samples_.block_center(block), local = p - center;
+    for (std::uint32_t s = block.begin; s < block.end; ++s) {
+      const Vec3 x{samples_.x[s], samples_.y[s], samples_.z[s]};
+      const double d = squared_norm(x - local);
+      if (d >= nearest.squared_distance) continue;
+      nearest = {d, true, center + x, unpack_normal(samples_.normal[s])};
+    }
+  }
+
+  const SampleSet& samples_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes_;  ///< of the blocks' bricks, ascending
+};
+
 }  // namespace
+
+std::unique_ptr<Projector> make_projector(const SampleSet& samples) {
+  return std::make_unique<SampleProjector>(samples);
+}
 
 std::unique_ptr<Projector> make_projector(const Shape& shape, const Box& bounds, Run& run) {
   if (const Mesh* mesh = shape.mesh()) return std::make_unique<MeshProjector>(*mesh, bounds, run);

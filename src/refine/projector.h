@@ -5,6 +5,7 @@
 
 #include "evenmesh/run.h"
 #include "evenmesh/shape.h"
+#include "sample/sample_set.h"
 
 namespace evenmesh {
 
@@ -20,5 +21,9 @@ class Projector {
 /// they cut the solid; null for indicator functions, which know no distance, and point clouds. Cost: a microsecond or
 /// two per point.
 std::unique_ptr<Projector> make_projector(const Shape& shape, const Box& bounds, Run& run);
+
+/// Onto the plane of the nearest sample: within κ d²/2 of the surface, d the distance between samples, κ the curvature.
+/// Keeps a reference to the samples. Cost: about a microsecond per point.
+std::unique_ptr<Projector> make_projector(const SampleSet& samples);
 
 }  // namespace evenmesh

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sample/cube_table.h"
 #include "evenmesh/run.h"
+#include "sample/cube_table.h"
 #include "sample/sample_set.h"
 
 namespace evenmesh {
@@ -26,10 +26,10 @@ class CubeWalker {
  public:
   explicit CubeWalker(const SampleSet& samples) : samples_(samples) { clear_all(); }
 
-  /// Calls visit(const std::uint32_t* loop, int length): sample indices in cyclic order, counter-clockwise from
-  /// outside.
+  /// Calls visit(const std::uint32_t* loop, const std::uint8_t* edges, int length): sample indices in cyclic order,
+  /// counter-clockwise from outside, and the edges of the cube they lie on (see CubeLoops).
   template <typename Visit>
-  void walk(const CubeBrick& brick, const Visit& visit) {
+  void walk_edges(const CubeBrick& brick, const Visit& visit) {
     load(brick);
     const auto& loops = cube_loops();
     for (int k = 0; k < 8; ++k)
@@ -42,11 +42,16 @@ class CubeWalker {
           for (int l = 0; l < cube.count; ++l) {
             int length = 0;
             for (int e = cube.start[l]; e < cube.start[l + 1]; ++e) loop[length++] = sample_on(cube.edge[e], i, j, k);
-            visit(static_cast<const std::uint32_t*>(loop), length);
+            visit(static_cast<const std::uint32_t*>(loop), &cube.edge[cube.start[l]], length);
           }
         }
       }
     unload();
+  }
+  /// Calls visit(const std::uint32_t* loop, int length).
+  template <typename Visit>
+  void walk(const CubeBrick& brick, const Visit& visit) {
+    walk_edges(brick, [&](const std::uint32_t* loop, const std::uint8_t*, int length) { visit(loop, length); });
   }
 
   /// Calls visit(corners, i, j, k) for every crossed cube: bit c of `corners` is set where corner c is inside.

@@ -60,17 +60,10 @@ std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const
   return normals;
 }
 
-// Whether a component is positive, without unpacking; and the opposite normal, both on the octahedron's 65534 steps.
+// Whether a component is positive, without unpacking, on the octahedron's 65534 steps.
 bool is_upward(PackedNormal n, unsigned axis) {
   const int u = static_cast<int>(n.bits & 0xffff) - 32767, v = static_cast<int>(n.bits >> 16) - 32767;
   return axis == 0 ? u >= 0 : axis == 1 ? v >= 0 : std::abs(u) + std::abs(v) <= 32767;
-}
-
-PackedNormal opposite(PackedNormal n) {
-  const int u = static_cast<int>(n.bits & 0xffff) - 32767, v = static_cast<int>(n.bits >> 16) - 32767;
-  // Turning z over folds the square's corners; the sign of what is folded stays that of u and v, here negated.
-  const int fu = (32767 - std::abs(v)) * (u < 0 ? 1 : -1), fv = (32767 - std::abs(u)) * (v < 0 ? 1 : -1);
-  return {static_cast<std::uint32_t>(fu + 32767) | static_cast<std::uint32_t>(fv + 32767) << 16};
 }
 
 // Groups one slab's crossings by brick: eight p at a time, a counting sort by brick along the ray.

@@ -67,4 +67,11 @@ Vec3 unpack_normal(PackedNormal packed) {
   return normalized({u, v, z});
 }
 
+PackedNormal opposite(PackedNormal n) {
+  const int u = static_cast<int>(n.bits & 0xffff) - 32767, v = static_cast<int>(n.bits >> 16) - 32767;
+  // Turning z over folds the square's corners; the sign of what is folded stays that of u and v, here negated.
+  const int fu = (32767 - std::abs(v)) * (u < 0 ? 1 : -1), fv = (32767 - std::abs(u)) * (v < 0 ? 1 : -1);
+  return {static_cast<std::uint32_t>(fu + 32767) | static_cast<std::uint32_t>(fv + 32767) << 16};
+}
+
 }  // namespace evenmesh

@@ -32,6 +32,8 @@ struct PackedNormal {
 };
 PackedNormal pack_normal(const Vec3& unit);
 Vec3 unpack_normal(PackedNormal packed);
+/// Exactly −n, and twice that is n again (except for the poles' many codes).
+PackedNormal opposite(PackedNormal n);
 
 /// Where a sample lies in its block: axis of the grid edge, cell of its lower end within the brick, which end is
 /// inside.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "evenmesh/error.h"
+#include "evenmesh/solid.h"
 
 namespace evenmesh {
 namespace {
@@ -127,6 +129,46 @@ Box find_bounds(const Field& field) {
   }
   throw UnusableInput(
       "f < 0 nowhere found: the solid is empty, or too small; inside is where the expression is negative");
+}
+
+namespace {
+
+Box united(Box box, const Box& other) {
+  box.add(other.lo), box.add(other.hi);
+  return box;
+}
+
+/// What all bounded operands have in common.
+Box common_bounds(const std::vector<Shape>& operands) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box box{{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
+  std::string reason;
+  for (const Shape& operand : operands) try {
+      const Box other = find_bounds(operand);
+      for (int a = 0; a < 3; ++a)
+        box.lo[a] = std::max(box.lo[a], other.lo[a]), box.hi[a] = std::min(box.hi[a], other.hi[a]);
+    } catch (const UnusableInput& error) {
+      reason = error.what();
+    }
+  if (!is_finite(box.lo)) throw UnusableInput(reason);
+  if (box.empty()) throw UnusableInput("the operands of an intersection lie apart: nothing is left");
+  return box;
+}
+
+}  // namespace
+
+Box find_bounds(const Shape& shape) {
+  if (!shape.bounds.empty()) return shape.bounds;
+  if (const Field* field = shape.field()) return find_bounds(*field);
+  const Compound* compound = shape.compound();
+  if (compound == nullptr) return shape.bounds;
+  if (compound->kind == Compound::Kind::intersect) return common_bounds(compound->operands);
+  Box box = find_bounds(compound->operands[0]);
+  if (compound->kind == Compound::Kind::unite)
+    for (const Shape& operand : compound->operands) box = united(box, find_bounds(operand));
+  if (compound->kind == Compound::Kind::offset && compound->distance > 0)
+    for (int a = 0; a < 3; ++a) box.lo[a] -= compound->distance, box.hi[a] += compound->distance;
+  return box;
 }
 
 }  // namespace evenmesh

@@ -2,6 +2,7 @@
 /// Where a field's solid is.
 
 #include "evenmesh/mesh.h"
+#include "evenmesh/shape.h"
 #include "shape/field.h"
 
 namespace evenmesh {
@@ -14,5 +15,9 @@ namespace evenmesh {
 /// Cost: a few milliseconds for formulas of a few dozen operations.
 /// @throws UnusableInput  the solid is unbounded, or nothing can be proved (no interval arithmetic), or f < 0 nowhere
 Box find_bounds(const Field& field);
+
+/// The shape's own bounds, or those found for its field or from the parts of a compound, of which some may be unbounded.
+/// @throws UnusableInput  nothing bounds it
+Box find_bounds(const Shape& shape);
 
 }  // namespace evenmesh

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "evenmesh/error.h"
+#include "geometry/primitives.h"
 #include "shape/expression.h"
 #include "shape/expression_field.h"
 #include "shape/field.h"
@@ -96,6 +97,11 @@ Shape shape_from_expression(std::string_view expression, const std::map<std::str
 Density density_from_expression(std::string_view expression, const std::map<std::string, double>& parameters) {
   const Shape shape = shape_from_expression(expression, parameters, {{-1, -1, -1}, {1, 1, 1}});
   return [shape](const Vec3& p) { return shape.field()->evaluate(p, nullptr); };
+}
+
+Shape shape_from_box(const Box& box, std::string name) {
+  require_usable_bounds(box);
+  return shape_from_mesh(make_box_around(box), std::move(name));
 }
 
 Shape shape_from_indicator(std::function<bool(const Vec3&)> inside, const Box& bounds, std::string name) {

@@ -5,6 +5,7 @@
 
 #include "evenmesh/error.h"
 #include "shape/affine_field.h"
+#include "shape/bounds.h"
 
 namespace evenmesh {
 namespace {
@@ -15,52 +16,19 @@ void require_solid(const Shape& shape) {
                        "' is a point cloud and has no inside: make a closed mesh of it first (wrap)");
 }
 
-Box united(Box box, const Box& other) {
-  if (other.empty()) return box;
-  box.add(other.lo), box.add(other.hi);
-  return box;
-}
-
-/// An empty box is one that is not known: everything.
-Box common(const Box& a, const Box& b) {
-  if (a.empty()) return b;
-  if (b.empty()) return a;
-  Box box;
-  for (int i = 0; i < 3; ++i) box.lo[i] = std::max(a.lo[i], b.lo[i]), box.hi[i] = std::min(a.hi[i], b.hi[i]);
-  return box;
-}
-
-Box bounds_of(const Compound& compound) {
-  Box box = compound.operands[0].bounds;
-  switch (compound.kind) {
-    case Compound::Kind::unite:
-      for (const Shape& operand : compound.operands) {
-        if (operand.bounds.empty()) return {};  // to be found
-        box = united(box, operand.bounds);
-      }
-      return box;
-    case Compound::Kind::intersect:
-      for (const Shape& operand : compound.operands) box = common(box, operand.bounds);
-      if (box.empty()) throw UnusableInput("the operands of an intersection lie apart: nothing is left");
-      return box;
-    case Compound::Kind::subtract:
-      return box;
-    case Compound::Kind::offset:
-      if (!box.empty() && compound.distance > 0)
-        for (int i = 0; i < 3; ++i) box.lo[i] -= compound.distance, box.hi[i] += compound.distance;
-      return box;
-  }
-  return box;
+bool is_bounded(const Shape& shape) {
+  return !shape.bounds.empty();
 }
 
 Shape compound(Compound::Kind kind, std::vector<Shape> operands, double distance, const std::string& name) {
   for (const Shape& operand : operands) require_solid(operand);
   Compound made{kind, std::move(operands), distance};
-  const bool known = std::all_of(made.operands.begin(), made.operands.end(),
-                                 [](const Shape& operand) { return !operand.bounds.empty(); });
-  const Box bounds =
-      known || kind != Compound::Kind::intersect || !made.operands[0].bounds.empty() ? bounds_of(made) : Box{};
-  return Shape{name, bounds, std::make_shared<const Compound>(std::move(made)), true};
+  const bool known = kind == Compound::Kind::subtract
+                         ? is_bounded(made.operands[0])
+                         : std::all_of(made.operands.begin(), made.operands.end(), is_bounded);
+  Shape shape{name, {}, std::make_shared<const Compound>(std::move(made)), true};
+  if (known) shape.bounds = find_bounds(shape);  // otherwise when it is sampled
+  return shape;
 }
 
 Shape joined(Compound::Kind kind, std::vector<Shape> shapes, const char* name) {
