@@ -21,8 +21,9 @@ struct Search {
   const std::array<Vec3, 3>* corners;
   Vec3 p;
   ClosestPoint best;
-  double scale;  ///< scene units per model unit
-  double slack;  ///< by which float boxes and the float copy of p may be off, scene units
+  double scale;      ///< scene units per model unit
+  double slack;      ///< by which float boxes and the float copy of p may be off, scene units
+  bool any = false;  ///< the first triangle within the radius will do
 };
 
 /// The float above x: a radius must never be rounded down.
@@ -43,6 +44,10 @@ bool visit(RTCPointQueryFunctionArguments* args) {
   const bool nearer = squared < best.squared_distance;
   best = {point, args->primID, squared};
   if (!nearer) return false;
+  if (search.any) {
+    args->query->radius = 0;
+    return true;
+  }
   const float radius = rounded_up(search.scale * std::sqrt(squared) * (1 + 1e-6) + search.slack);
   if (!(radius < args->query->radius)) return false;
   args->query->radius = radius;
@@ -82,11 +87,19 @@ SurfaceQuery::SurfaceQuery(const Mesh& mesh, Run& run) {
   data_ = std::move(data);
 }
 
-ClosestPoint SurfaceQuery::closest(const Vec3& p, double max_distance) const {
-  const double scale = data_->scene.scale(), from_origin = norm(data_->scene.to_local(p)) / scale;
+namespace {
+
+/// @param from_origin  distance of p from the scene's origin, model units
+Search search_from(const EmbreeScene& scene, const std::array<Vec3, 3>* corners, const Vec3& p, double from_origin) {
   // Float copies of p and of the corners are both off; p may lie far outside the box.
-  const double slack = 2 * EmbreeScene::rounding + scale * from_origin * 0x1p-22;
-  const Search search{data_->corners.data(), p, {}, scale, slack};
+  return {corners, p, {}, scene.scale(), 2 * EmbreeScene::rounding + scene.scale() * from_origin * 0x1p-22};
+}
+
+}  // namespace
+
+ClosestPoint SurfaceQuery::closest(const Vec3& p, double max_distance) const {
+  const double from_origin = norm(data_->scene.to_local(p)) / data_->scene.scale();
+  const Search search = search_from(data_->scene, data_->corners.data(), p, from_origin);
   const double enough = (from_origin + data_->farthest) * (1 + 1e-9);
   double radius =
       std::isfinite(max_distance) ? max_distance : std::max(data_->first_radius, from_origin - data_->farthest);
@@ -96,6 +109,14 @@ ClosestPoint SurfaceQuery::closest(const Vec3& p, double max_distance) const {
     if (result.found() || !(radius < std::min(max_distance, enough))) return result;
     radius = std::min({2 * radius, max_distance, enough});
   }
+}
+
+bool SurfaceQuery::reaches(const Vec3& p, double distance) const {
+  const double from_origin = norm(data_->scene.to_local(p)) / data_->scene.scale();
+  if (distance < 0 || from_origin - data_->farthest > distance) return false;
+  Search search = search_from(data_->scene, data_->corners.data(), p, from_origin);
+  search.any = true;
+  return search_within(data_->scene, search, distance).found();
 }
 
 }  // namespace evenmesh

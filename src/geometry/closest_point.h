@@ -33,6 +33,9 @@ class SurfaceQuery {
   /// Cost: about a microsecond where p is near the surface.
   ClosestPoint closest(const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
 
+  /// Whether a point of the surface lies within `distance` of p. Cheap where it is clearly so, or clearly not.
+  bool reaches(const Vec3& p, double distance) const;
+
  private:
   struct Data;
   std::shared_ptr<const Data> data_;

@@ -15,8 +15,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr double direct_reach = 6;  ///< cells: nearer to the surface queries are cheap
-constexpr double same_way = 0.7;    ///< cosine between gradients that see one smooth piece of surface
+constexpr double same_way = 0.7;  ///< cosine between gradients that see one smooth piece of surface
 
 /// The nearest point of the surface.
 struct Nearest {
@@ -49,6 +48,15 @@ class SurfaceDistance {
     return found;
   }
 
+  /// Where the distance of p lies: −1 below the level by more than `reach`, 1 above, 0 perhaps near it.
+  int side_of(const Vec3& p, double level, double reach) const {
+    const double away = std::abs(level);
+    if (!query_->reaches(p, away + reach)) return is_inside(p) ? -1 : 1;
+    if (away > reach && query_->reaches(p, away - reach)) return level > 0 ? -1 : 1;
+    // The other side of the surface: that far beyond it.
+    return away > grid_.spacing && is_inside(p) != (level < 0) && away > reach ? (level > 0 ? -1 : 1) : 0;
+  }
+
  private:
   bool is_inside(const Vec3& p) const {
     const Vec3 at = (p - grid_.origin) / grid_.spacing;
@@ -66,7 +74,7 @@ class SurfaceDistance {
 ///
 /// A query far from the surface looks at all triangles of a lens as wide as the way is long. Between nodes the distance
 /// is smooth: the mean of the interpolated distances and of the interpolated tangent planes is exact to second order.
-/// Where the nodes' nearest points lie on different pieces of surface, the nearest of them counts.
+/// Where the nodes see different pieces of surface, it is asked for.
 class DistanceLattice {
  public:
   DistanceLattice(const SurfaceDistance& surface, double level, double step, const Box& box, Run& run)
@@ -87,11 +95,11 @@ class DistanceLattice {
     for (std::uint32_t n = 0; n < keys.size(); ++n) index_.emplace(keys[n], n);
     parallel_for(run, keys.size(), 64, [&](std::size_t begin, std::size_t end) {
       Vec3 last;
-      double bound = std::numeric_limits<double>::infinity();
+      double bound = std::abs(level_) + 3 * step_;
       for (std::size_t n = begin; n < end; ++n) {
         const auto at = morton_decode(keys[n]);
         const Vec3 p = origin_ + step_ * Vec3(at[0], at[1], at[2]);
-        node_[n] = surface_.find(p, bound + norm(p - last) * (1 + 1e-6) + 1e-9 * step_);
+        node_[n] = surface_.find(p, n == begin ? bound : bound + norm(p - last) * (1 + 1e-6) + 1e-9 * step_);
         bound = std::abs(node_[n].distance), last = p;
       }
     });
@@ -125,15 +133,14 @@ class DistanceLattice {
         parts.push_back({c[0] + (part & 1) * half, c[1] + (part >> 1 & 1) * half, c[2] + (part >> 2) * half});
     cells.swap(parts);
   }
-  /// Those cells that may hold the level, or lie next to one that may.
+  /// Those cells that may hold the level.
   void keep_near_level(Cells& cells, std::uint32_t side, const Box& box, const Run& run) const {
     std::vector<char> keep(cells.size());
     parallel_for(run, cells.size(), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Vec3 lo = origin_ + step_ * Vec3(cells[i][0], cells[i][1], cells[i][2]);
         if (lo.x > box.hi.x || lo.y > box.hi.y || lo.z > box.hi.z) continue;
-        const double middle = surface_.find(lo + 0.5 * side * step_ * Vec3{1, 1, 1}).distance;
-        keep[i] = std::abs(middle - level_) <= (0.87 * side + 1.8) * step_;
+        keep[i] = surface_.side_of(lo + 0.5 * side * step_ * Vec3{1, 1, 1}, level_, (0.87 * side + 0.2) * step_) == 0;
       }
     });
     std::size_t kept = 0;
@@ -154,9 +161,8 @@ class DistanceLattice {
       cell.node[c] = &node_[found->second];
     }
     cell.known = true;
-    cell.smooth = std::all_of(cell.node.begin(), cell.node.end(), [&](const Nearest* n) {
-      return dot(n->gradient, cell.node[0]->gradient) > same_way && (n->distance < 0) == (cell.node[0]->distance < 0);
-    });
+    cell.smooth = std::all_of(cell.node.begin(), cell.node.end(),
+                              [&](const Nearest* n) { return dot(n->gradient, cell.node[0]->gradient) > same_way; });
   }
   Nearest interpolated(const Vec3& p, const Vec3& at, const Cell& cell) const {
     Nearest result;
@@ -177,12 +183,11 @@ class DistanceLattice {
     result.gradient = normalized(gradient);
     return result;
   }
-  static Nearest nearest_of(const Vec3& p, const Cell& cell) {
-    const Nearest* best = cell.node[0];
-    for (const Nearest* node : cell.node)
-      if (squared_norm(p - node->point) < squared_norm(p - best->point)) best = node;
-    const double distance = norm(p - best->point), sign = best->distance < 0 ? -1 : 1;
-    return {best->point, distance > 0 ? (p - best->point) / (sign * distance) : best->gradient, sign * distance};
+  /// Exactly; the nodes' nearest points bound the search.
+  Nearest nearest_of(const Vec3& p, const Cell& cell) const {
+    double bound = std::numeric_limits<double>::infinity();
+    for (const Nearest* node : cell.node) bound = std::min(bound, squared_norm(p - node->point));
+    return surface_.find(p, std::sqrt(bound) * (1 + 1e-6) + 1e-9 * step_);
   }
 
   const SurfaceDistance& surface_;
@@ -196,9 +201,9 @@ class DistanceField final : public Field {
  public:
   DistanceField(const SampleSet& samples, double offset, double spacing, const Box& box, Run& run)
       : offset_(offset), surface_(samples, run) {
+    // A distance changes its direction over about as much as itself.
     const double cells = std::abs(offset) / spacing;
-    if (cells >= direct_reach)
-      lattice_.emplace(surface_, offset, (cells >= 2 * direct_reach ? 4 : 2) * spacing, box, run);
+    lattice_.emplace(surface_, offset, (cells >= 24 ? 8 : cells >= 8 ? 4 : cells >= 2.5 ? 2 : 1) * spacing, box, run);
   }
 
   void evaluate(const PointBatch& points, std::span<float> values) const override {
@@ -217,9 +222,11 @@ class DistanceField final : public Field {
     }
   }
   Interval evaluate(const Box& box) const override {
-    const double reach = 0.51 * box.diagonal() + surface_.spacing();
-    const double middle = surface_.find(box.center()).distance - offset_;
-    return {middle - reach, middle + reach};
+    const double reach = 0.51 * box.diagonal();
+    const int side = surface_.side_of(box.center(), offset_, reach);
+    return side < 0   ? Interval{-reach, -0.01 * reach}
+           : side > 0 ? Interval{0.01 * reach, reach}
+                      : Interval{-2 * reach, 2 * reach};
   }
   double evaluate(const Vec3& point, Vec3* gradient) const override {
     DistanceLattice::Cell cell;
@@ -231,9 +238,10 @@ class DistanceField final : public Field {
 
  private:
   Nearest find(const Vec3& p, DistanceLattice::Cell& cell) const {
-    if (lattice_)
-      if (const auto found = lattice_->find(p, cell)) return *found;
-    return surface_.find(p);
+    if (const auto found = lattice_->find(p, cell)) return *found;
+    // So far from the level that only its side matters.
+    const int side = surface_.side_of(p, offset_, 0);
+    return {p, {1, 0, 0}, offset_ + (side < 0 ? -1 : 1) * 8 * surface_.spacing()};
   }
 
   double offset_;
