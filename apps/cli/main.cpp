@@ -36,6 +36,7 @@ int parse_and_act(int argc, char** argv) {
   cli::Action action;
   cli::add_mesh_command(app, action);
   cli::add_wrap_command(app, action);
+  cli::add_repair_command(app, action);
   cli::add_info_command(app, action);
   cli::add_compare_command(app, action);
   cli::add_gallery_command(app, action);

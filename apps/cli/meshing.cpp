@@ -184,8 +184,10 @@ int run_meshing(MeshingArguments a) {
     Terminal terminal(run, plan.talk, a.progress);
     Shape shape = read_shape(a.input, plan.options.bounds.value_or(Box{}), run);
     if (plan.outliers) shape = without_outliers(shape, *plan.outliers, plan.talk, run);
+    MeshOptions options = plan.options;
+    if (a.prepare) a.prepare(shape, options, plan.talk);
     reading = seconds_since(start);
-    result = mesh_shape(shape, plan.options, run);
+    result = mesh_shape(shape, options, run);
     auto& seconds = result.report.seconds;
     seconds.insert(seconds.begin(), {"read", reading});
     if (!a.dump_shell.empty() && result.shell.voxels.empty())

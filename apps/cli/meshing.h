@@ -2,11 +2,13 @@
 /// The options that all meshing commands share, and the run behind them.
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "evenmesh/mesh_shape.h"
 #include "input.h"
+#include "terminal.h"
 
 namespace evenmesh::cli {
 
@@ -24,6 +26,8 @@ struct MeshingArguments {
   std::string error, max_cycle, dump_dexels, entry;  ///< documented, not available yet
   bool quiet = false, verbose = false;
   bool wrap = false;
+  /// What a command does with the shape that was read, and with the options, before it is meshed.
+  std::function<void(Shape&, MeshOptions&, Talk)> prepare;
 };
 
 void add_meshing_options(CLI::App& app, MeshingArguments& arguments);

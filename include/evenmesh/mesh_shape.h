@@ -37,6 +37,7 @@ struct MeshOptions {
   Method method = Method::automatic;
   std::optional<unsigned> thickness{};  ///< half width d of the shell in voxels, [1, 20]: holes and gaps narrower than
                                         ///< 2d are bridged; default 2, for point clouds by their spacing
+  bool fill_cavities = false;           ///< of solids, keep what the outside reaches: their outer hull
   bool wrap = false;                    ///< a closed mesh one voxel around the surface instead, by the shell
   Density density{};                    ///< none: even. Smooth, and at most a hundred times its mean
   std::optional<Box> bounds{};          ///< replaces the shape's own; a surface cut by it is capped
@@ -72,6 +73,7 @@ struct Report {
   double energy_ratio = 0;       ///< F·k/A² / (5/(18√3)); 1 = perfect hexagonal tiling
   std::vector<double> energies;  ///< energy ratio after every evaluation, all levels in turn
   std::size_t evaluations = 0;
+  std::size_t filled_cavities = 0;     ///< parts of surface within the solid, left out
   std::size_t disagreements = 0;       ///< grid points whose inside differed between ray directions, settled by vote
   std::size_t dropped_components = 0;  ///< dust: pieces of surface smaller than a cell, left out
   std::size_t sites = 0;               ///< shell: voxels that the surface touches

@@ -19,6 +19,10 @@ namespace evenmesh {
 class Field;
 struct Compound;
 
+/// What is inside a triangle mesh: points around which it winds, or those that it winds around the right way, so that
+/// parts which face inward bound nothing.
+enum class Winding { any, positive };
+
 /// Something with a surface. Cheap to copy.
 struct Shape {
   std::string name;  ///< for messages
@@ -30,6 +34,7 @@ struct Shape {
       what;
   /// The solid leaves its bounds and is closed by them on purpose, or may be (then a cut is worth a warning).
   bool capped_by_bounds = false;
+  Winding winding = Winding::any;  ///< of a mesh
 
   const Mesh* mesh() const {
     const auto* p = std::get_if<std::shared_ptr<const Mesh>>(&what);

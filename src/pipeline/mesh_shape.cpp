@@ -176,6 +176,8 @@ class Job {
   void sample_at(std::size_t resolution) {
     samples_ =
         stages_.stage("sample", 0.1, [&] { return sample_shape(shape_, make_grid(shape_.bounds, resolution), run_); });
+    if (options_.fill_cavities)
+      report_.filled_cavities = stages_.stage("sample", 0, [&] { return fill_cavities(samples_, run_); });
   }
 
   /// Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.

@@ -19,6 +19,7 @@ std::string report_json(const Report& r) {
   json["energies"] = r.energies;
   json["evaluations"] = r.evaluations;
   json["disagreements"] = r.disagreements;
+  json["filled_cavities"] = r.filled_cavities;
   json["dropped_components"] = r.dropped_components;
   json["sites"] = r.sites;
   json["shell_voxels"] = r.shell_voxels;

@@ -56,22 +56,23 @@ void sort_hits(std::span<RayHit> hits) {
   }
 }
 
-void resolve_ray(std::span<RayHit> hits, std::vector<DexelCrossing>& out, RayCounts& counts) {
+void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing>& out, RayCounts& counts) {
   int sum = 0;
   for (const RayHit& hit : hits) sum += hit.step;
   if (sum != 0) hits = close_ray(hits);
   int winding = 0;
+  const auto is_inside = [&] { return rule == Winding::any ? winding != 0 : winding > 0; };
   for (std::size_t i = 0; i < hits.size();) {
-    const bool inside = winding != 0;
+    const bool inside = is_inside();
     const std::uint16_t cell = hits[i].cell;
     std::size_t changes = 0, last = i;
     for (; i < hits.size() && hits[i].cell == cell; ++i) {
-      const bool was_inside = winding != 0;
+      const bool was_inside = is_inside();
       winding += hits[i].step;
-      if ((winding != 0) != was_inside) ++changes, last = i;
+      if (is_inside() != was_inside) ++changes, last = i;
     }
     // The change that counts is the last one: it is next to the upper grid point's side.
-    const bool changed = (winding != 0) != inside;
+    const bool changed = is_inside() != inside;
     counts.unresolved += changes - (changed ? 1 : 0);
     if (!changed) continue;
     out.push_back({hits[last].source, hits[last].t, cell, !inside, hits[last].made});

@@ -29,7 +29,8 @@ struct RayCounts {
 void sort_hits(std::span<RayHit> hits);
 
 /// Appends the crossings at which inside changes, at most one per cell, to `out`; hits must be sorted.
+/// @param winding  what counts as inside; of closed meshes that face outward the number rises where the ray enters
 /// Rays whose winding number does not return to 0 are read by parity, less an unmatched hit.
-void resolve_ray(std::span<RayHit> hits, std::vector<DexelCrossing>& out, RayCounts& counts);
+void resolve_ray(std::span<RayHit> hits, Winding winding, std::vector<DexelCrossing>& out, RayCounts& counts);
 
 }  // namespace evenmesh

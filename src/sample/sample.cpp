@@ -71,7 +71,7 @@ SampleSet sample_any(const Shape& shape, const Grid& grid, const Box& bounds, Ru
     return compound->kind == Compound::Kind::offset ? sample_offset(*compound, grid, bounds, run)
                                                     : sample_boolean(*compound, grid, run);
   if (!shape.mesh()) throw InvalidInput(shape.name + " has no inside: give the shape a mesh or a field");
-  return sample_dexels(scan_mesh(*shape.mesh(), grid, run, bounds), *shape.mesh(), run);
+  return sample_dexels(scan_mesh(*shape.mesh(), grid, run, bounds, shape.winding), *shape.mesh(), run);
 }
 
 }  // namespace

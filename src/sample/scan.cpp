@@ -250,8 +250,8 @@ std::vector<DexelCrossing> as_crossings(std::span<const RayHit> hits) {
 }
 
 // Scans one slab; `raw` (may be null) receives all hits.
-RayCounts scan_slab(const Lattice& lattice, const Mesh& mesh, int axis, std::size_t index, Scratch& scratch,
-                    DexelSlab& slab, DexelSlab* raw) {
+RayCounts scan_slab(const Lattice& lattice, const Mesh& mesh, Winding winding, int axis, std::size_t index,
+                    Scratch& scratch, DexelSlab& slab, DexelSlab* raw) {
   const SlabBins& bins = lattice.bins[static_cast<std::size_t>(axis)];
   RayCounts counts;
   scratch.hits.clear();
@@ -276,7 +276,7 @@ RayCounts scan_slab(const Lattice& lattice, const Mesh& mesh, int axis, std::siz
   for (std::size_t r = 0; r < rays; ++r) {
     const std::span<RayHit> hits = std::span(scratch.sorted).subspan(slab.begin[r], slab.begin[r + 1] - slab.begin[r]);
     slab.begin[r] = static_cast<std::uint32_t>(scratch.out.size());
-    if (!hits.empty()) resolve_ray(hits, scratch.out, counts);
+    if (!hits.empty()) resolve_ray(hits, winding, scratch.out, counts);
   }
   slab.begin[rays] = static_cast<std::uint32_t>(scratch.out.size());
   slab.crossings.assign(scratch.out.begin(), scratch.out.end());
@@ -301,7 +301,7 @@ std::size_t TriDexel::size() const {
   return sum;
 }
 
-TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run, const Box& bounds) {
+TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run, const Box& bounds, Winding winding) {
   TriDexel solid;
   solid.grid = grid;
   std::array<DexelAxis, 3> raw;
@@ -322,7 +322,7 @@ TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run, const Box& boun
     for (std::size_t i = begin; i < end; ++i) {
       const auto axis = static_cast<std::size_t>(tasks[i].first);
       DexelSlab* all = solid.closed ? nullptr : &raw[axis].slabs[tasks[i].second];
-      counts[i] = scan_slab(lattice, mesh, tasks[i].first, tasks[i].second, scratch,
+      counts[i] = scan_slab(lattice, mesh, winding, tasks[i].first, tasks[i].second, scratch,
                             solid.axes[axis].slabs[tasks[i].second], all);
     }
   });

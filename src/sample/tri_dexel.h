@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "evenmesh/mesh.h"
+#include "evenmesh/shape.h"
 #include "sample/sample_set.h"
 
 namespace evenmesh {
@@ -53,7 +54,7 @@ struct TriDexel {
   std::size_t size() const;  ///< crossings
 };
 
-/// Scan conversion of a triangle mesh; a point is inside where the winding number is not zero.
+/// Scan conversion of a triangle mesh; a point is inside where the winding number is not zero, or above zero.
 ///
 /// Guarantee: for a mesh without boundary, self-intersecting or not, of either orientation, the three directions imply
 /// the same inside at every grid point: vertices are snapped to a lattice of 2^-16 cells, everything after is exact,
@@ -64,7 +65,8 @@ struct TriDexel {
 /// @param bounds  empty: the mesh must fit into the grid; otherwise the solid is cut by this box and closed on its
 /// faces
 /// @throws InvalidInput  an index is out of range, a coordinate not finite, or the mesh does not fit into the grid
-TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run = Run::silent(), const Box& bounds = {});
+TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run = Run::silent(), const Box& bounds = {},
+                   Winding winding = Winding::any);
 
 /// Replaces the three directions' opinions by their majority, point by point, and rebuilds the crossings from that one
 /// sign grid. `raw[a]` holds every crossing of axis a as it was found, for the positions of new crossings.

@@ -108,7 +108,9 @@ Shape transformed(const Shape& shape, const Affine& transform) {
     for (Vec3& v : mesh.vertices) v = transform(v);
     if (transform.determinant() < 0)
       for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-    return shape_from_mesh(std::move(mesh), shape.name);
+    Shape moved = shape_from_mesh(std::move(mesh), shape.name);
+    moved.winding = shape.winding;
+    return moved;
   }
   Shape moved = shape;
   auto field = std::get<std::shared_ptr<const Field>>(shape.what);

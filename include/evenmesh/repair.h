@@ -1,0 +1,32 @@
+#pragma once
+/// Triangle meshes with defects, put in order before they are sampled.
+
+#include <cstddef>
+
+#include "evenmesh/mesh.h"
+
+namespace evenmesh {
+
+/// What cleaned() did, and what is left to be healed by sampling.
+struct Defects {
+  std::size_t welded_vertices = 0;       ///< vertices at the place of another one, joined with it
+  std::size_t degenerate_triangles = 0;  ///< with two corners in one place, or without area: left out
+  std::size_t repeated_triangles = 0;    ///< with the same corners as another one: left out
+  std::size_t turned_triangles = 0;      ///< that faced other ways than most around them
+  std::size_t non_manifold_edges = 0;    ///< with three triangles or more: kept
+  std::size_t boundary_edges = 0;        ///< with one triangle: kept
+  std::size_t patches = 0;               ///< connected across edges of two triangles
+
+  /// Share of the triangles' edges that lie on a boundary, [0, 1].
+  double open_share = 0;
+};
+
+/// The mesh with one vertex for equal points, without degenerate and repeated triangles, each patch facing one way:
+/// that of most of its triangles, by area.
+///
+/// A patch that cannot face one way (a Möbius band) is turned as far as possible.
+/// Guarantee: no coordinate changes; unused vertices are left out. Cost: about 1 µs per triangle.
+/// @throws InvalidInput  a triangle's index is out of range
+Mesh cleaned(const Mesh& mesh, Defects& defects);
+
+}  // namespace evenmesh
