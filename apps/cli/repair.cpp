@@ -14,15 +14,14 @@
 namespace evenmesh::cli {
 namespace {
 
-/// More of the triangles' edges on a boundary, and there is no inside to speak of.
-constexpr double sheets_from = 0.05;
+constexpr double least_solidity = 0.6;  ///< below it there is no inside to speak of
 
 struct RepairArguments {
   MeshingArguments meshing;
   std::string hull = "auto";
 };
 
-std::string said_of(const Defects& d) {
+std::string said_of(const MeshDefects& d) {
   std::string text;
   const auto add = [&](std::size_t count, const char* what) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
@@ -41,14 +40,14 @@ int run_repair(RepairArguments a) {
   a.meshing.prepare = [hull = a.hull](Shape& shape, MeshOptions& options, Talk talk) {
     if (!shape.mesh())
       throw InvalidInput("repair takes a triangle mesh; other inputs have nothing to repair: use mesh");
-    Defects defects;
+    MeshDefects defects;
     Mesh mesh = cleaned(*shape.mesh(), defects);
     if (mesh.triangles.empty()) throw UnusableInput(shape.name + " has no triangle with an area");
     if (talk != Talk::quiet) say("note", said_of(defects));
     shape = shape_from_mesh(std::move(mesh), shape.name);
-    const bool sheets = defects.open_share > sheets_from;
-    if (hull == "wrap" || (hull == "auto" && sheets)) {
-      if (talk != Talk::quiet && hull == "auto")
+    const bool sheets = hull == "auto" && solidity(*shape.mesh()) < least_solidity;
+    if (hull == "wrap" || sheets) {
+      if (talk != Talk::quiet && sheets)
         say("note", "most of it is sheets without an inside: they are wrapped, one voxel outside (--hull outer: not)");
       options.wrap = true, options.method = Method::shell;
       return;

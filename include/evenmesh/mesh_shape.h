@@ -17,7 +17,7 @@
 namespace evenmesh {
 
 /// How the surface is sampled: by rays through a solid, or by a thin shell of voxels around any surface. Automatic: the
-/// shell for point clouds and for triangle meshes that are far from closed.
+/// shell for point clouds and for triangle meshes that have no inside to speak of (solidity() below 0.6).
 enum class Method { automatic, raster, shell };
 enum class Quality { fast, normal, high };
 enum class Optimizer { lbfgs, lloyd };

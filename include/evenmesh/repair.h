@@ -4,11 +4,12 @@
 #include <cstddef>
 
 #include "evenmesh/mesh.h"
+#include "evenmesh/run.h"
 
 namespace evenmesh {
 
 /// What cleaned() did, and what is left to be healed by sampling.
-struct Defects {
+struct MeshDefects {
   std::size_t welded_vertices = 0;       ///< vertices at the place of another one, joined with it
   std::size_t degenerate_triangles = 0;  ///< with two corners in one place, or without area: left out
   std::size_t repeated_triangles = 0;    ///< with the same corners as another one: left out
@@ -16,9 +17,6 @@ struct Defects {
   std::size_t non_manifold_edges = 0;    ///< with three triangles or more: kept
   std::size_t boundary_edges = 0;        ///< with one triangle: kept
   std::size_t patches = 0;               ///< connected across edges of two triangles
-
-  /// Share of the triangles' edges that lie on a boundary, [0, 1].
-  double open_share = 0;
 };
 
 /// The mesh with one vertex for equal points, without degenerate and repeated triangles, each patch facing one way:
@@ -27,6 +25,12 @@ struct Defects {
 /// A patch that cannot face one way (a Möbius band) is turned as far as possible.
 /// Guarantee: no coordinate changes; unused vertices are left out. Cost: about 1 µs per triangle.
 /// @throws InvalidInput  a triangle's index is out of range
-Mesh cleaned(const Mesh& mesh, Defects& defects);
+Mesh cleaned(const Mesh& mesh, MeshDefects& defects);
+
+/// How much of an inside a mesh has: of the points that rays of any of three directions call inside, the share on which
+/// all three agree. 1 for closed meshes, 0.9 with some holes, below a half for open sheets; 0 if no ray finds an inside.
+///
+/// Asked at 64 points along the longest side. Cost: some milliseconds and about 0.2 µs per triangle.
+double solidity(const Mesh& mesh, Run& run = Run::silent());
 
 }  // namespace evenmesh

@@ -21,12 +21,18 @@ std::vector<std::uint32_t> places_of(const std::vector<Vec3>& vertices) {
   return place;
 }
 
+/// Without area, up to rounding.
+bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double longest = std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
+  return squared_norm(cross(b - a, c - a)) <= 1e-28 * longest * longest;
+}
+
 Triangle sorted(Triangle t) {
   std::sort(t.begin(), t.end());
   return t;
 }
 
-void drop_repeated(std::vector<Triangle>& triangles, Defects& defects) {
+void drop_repeated(std::vector<Triangle>& triangles, MeshDefects& defects) {
   std::vector<std::uint32_t> order(triangles.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -49,7 +55,7 @@ struct Neighbours {
   bool agree = false;
 };
 
-std::vector<Neighbours> neighbours_of(const std::vector<Triangle>& triangles, Defects& defects) {
+std::vector<Neighbours> neighbours_of(const std::vector<Triangle>& triangles, MeshDefects& defects) {
   struct HalfEdge {
     std::uint32_t low, high, triangle;
     bool up;
@@ -76,7 +82,7 @@ std::vector<Neighbours> neighbours_of(const std::vector<Triangle>& triangles, De
 }
 
 /// Turns triangles patch by patch.
-void orient(Mesh& mesh, Defects& defects) {
+void orient(Mesh& mesh, MeshDefects& defects) {
   const std::vector<Neighbours> neighbours = neighbours_of(mesh.triangles, defects);
   std::vector<std::vector<std::pair<std::uint32_t, bool>>> around(mesh.triangles.size());
   for (const Neighbours& n : neighbours) around[n.a].push_back({n.b, n.agree}), around[n.b].push_back({n.a, n.agree});
@@ -119,7 +125,7 @@ void pack(Mesh& mesh) {
 
 }  // namespace
 
-Mesh cleaned(const Mesh& mesh, Defects& defects) {
+Mesh cleaned(const Mesh& mesh, MeshDefects& defects) {
   defects = {};
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t v : t)
@@ -130,7 +136,7 @@ Mesh cleaned(const Mesh& mesh, Defects& defects) {
   for (const Triangle& t : mesh.triangles) {
     const Triangle welded{place[t[0]], place[t[1]], place[t[2]]};
     const Vec3 &a = mesh.vertices[welded[0]], &b = mesh.vertices[welded[1]], &c = mesh.vertices[welded[2]];
-    if (cross(b - a, c - a) == Vec3{})
+    if (is_degenerate(a, b, c))
       ++defects.degenerate_triangles;
     else
       result.triangles.push_back(welded);
@@ -138,9 +144,6 @@ Mesh cleaned(const Mesh& mesh, Defects& defects) {
   drop_repeated(result.triangles, defects);
   orient(result, defects);
   pack(result);
-  if (!result.triangles.empty())
-    defects.open_share =
-        static_cast<double>(defects.boundary_edges) / (1.5 * static_cast<double>(result.triangles.size()));
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "connect/dual_polygons.h"
 #include "connect/surface_parts.h"
+#include "evenmesh/repair.h"
 #include "evenmesh/solid.h"
 #include "geometry/half_edges.h"
 #include "pipeline/cells_to_mesh.h"
@@ -75,13 +76,19 @@ class RegularizedProjector : public Projector {
   const BallIndex& balls_;
 };
 
+constexpr double least_solidity = 0.6;  ///< of meshes with an inside to speak of
+
 /// Single precision holds areas and energies, products of up to four lengths, of models between these sizes.
 constexpr double smallest_model = 1e-8, largest_model = 1e10;
 
 class Job {
  public:
   Job(const Shape& shape, const MeshOptions& options, Run& run)
-      : shape_(shape), options_(options), run_(run), stages_(run, report_), by_shell_(wants_shell(shape, options)) {}
+      : shape_(shape),
+        options_(options),
+        run_(run),
+        stages_(run, report_),
+        by_shell_(wants_shell(shape, options, run)) {}
 
   MeshResult result() {
     ConnectedCells& cells = cells_;
@@ -96,11 +103,11 @@ class Job {
   }
 
  private:
-  static bool wants_shell(const Shape& shape, const MeshOptions& options) {
+  static bool wants_shell(const Shape& shape, const MeshOptions& options, Run& run) {
     if (options.method == Method::raster && (options.wrap || shape.points()))
       throw InvalidInput("rays need a solid: points and wraps are meshed by the shell method");
     if (options.method == Method::shell || options.wrap || shape.points()) return true;
-    return options.method == Method::automatic && shape.mesh() && is_open_surface(*shape.mesh());
+    return options.method == Method::automatic && shape.mesh() && solidity(*shape.mesh(), run) < least_solidity;
   }
 
   void find_shape_bounds() {

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "connect/surface_parts.h"
-#include "geometry/half_edges.h"
 #include "geometry/triangle.h"
 #include "pipeline/fineness.h"
 #include "sample/blocks.h"
@@ -108,21 +107,6 @@ SiteVoxels voxelize(const Shape& shape, const ShellPlan& plan, Run& run) {
 }
 
 }  // namespace
-
-bool is_open_surface(const Mesh& mesh) {
-  const HalfEdges edges(mesh.triangles, mesh.vertices.size());
-  Vec3 sum;
-  double area = 0;
-  std::size_t boundary = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto [a, b, c] = corners_of(mesh, t);
-    const Vec3 n = area_normal(a, b, c);
-    sum += n, area += norm(n);
-    for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) boundary += edges.opposite(h) == HalfEdges::none;
-  }
-  return static_cast<double>(boundary) > 0.01 * 3 * static_cast<double>(mesh.triangles.size()) ||
-         norm(sum) > 0.03 * area;
-}
 
 namespace {
 

@@ -16,10 +16,6 @@ struct ShellSampling {
   SampleSet on_surface;                   ///< the same, drawn onto the surface in the middle of the shell
 };
 
-/// Whether a triangle mesh is far from bounding a solid: its boundary is more than 1 % of its edges, or its area
-/// vectors do not cancel out.
-bool is_open_surface(const Mesh& mesh);
-
 /// Chooses resolution and thickness, samples, and fills in the result's shell and the report's counts: asked seeds,
 /// samples, sites, shell.
 /// @throws UnusableInput  nothing of the surface lies within the bounds

@@ -11,6 +11,7 @@
 #include "sample/lattice.h"
 #include "sample/rays.h"
 #include "sample/tri_dexel.h"
+#include "sample/witnesses.h"
 
 namespace evenmesh {
 namespace {
@@ -301,10 +302,13 @@ std::size_t TriDexel::size() const {
   return sum;
 }
 
-TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run, const Box& bounds, Winding winding) {
+namespace {
+
+/// @param raw  receives all hits of a mesh that is not closed
+TriDexel scan(const Mesh& mesh, const Grid& grid, Run& run, const Box& bounds, Winding winding,
+              std::array<DexelAxis, 3>& raw) {
   TriDexel solid;
   solid.grid = grid;
-  std::array<DexelAxis, 3> raw;
   std::vector<std::pair<int, std::size_t>> tasks;
   const Lattice lattice = make_lattice(mesh, grid, bounds, run);
   solid.closed = lattice.closed;
@@ -330,7 +334,20 @@ TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run, const Box& boun
     solid.unresolved += c.unresolved;
     solid.cut_by_bounds = solid.cut_by_bounds || c.capped;
   }
-  if (!solid.closed) vote(solid, raw, run);
+  return solid;
+}
+
+}  // namespace
+
+TriDexel scan_rays(const Mesh& mesh, const Grid& grid, Run& run, Winding winding) {
+  std::array<DexelAxis, 3> raw;
+  return scan(mesh, grid, run, {}, winding, raw);
+}
+
+TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run, const Box& bounds, Winding winding) {
+  std::array<DexelAxis, 3> raw;
+  TriDexel solid = scan(mesh, grid, run, bounds, winding, raw);
+  if (!solid.closed) vote(solid, raw, Witnesses(mesh, grid.spacing, winding, run), run);
   return solid;
 }
 

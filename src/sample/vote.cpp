@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "sample/tri_dexel.h"
+#include "sample/witnesses.h"
 
 namespace evenmesh {
 namespace {
@@ -43,8 +44,9 @@ struct Votes {
 // The layers [first, last] of a solid.
 class LayerVoter {
  public:
-  LayerVoter(const TriDexel& solid, std::uint32_t first, std::uint32_t last)
+  LayerVoter(const TriDexel& solid, const Witnesses& witnesses, std::uint32_t first, std::uint32_t last)
       : solid_(solid),
+        witnesses_(witnesses),
         nx_(solid.grid.size[0]),
         ny_(solid.grid.size[1]),
         width_((nx_ + 63) / 64),
@@ -64,6 +66,11 @@ class LayerVoter {
     for (std::size_t w = 0; w < width_ * ny_; ++w) {
       const Word a = o.axis[0].bits[w], b = o.axis[1].bits[w], c = o.axis[2].bits[w];
       o.majority.bits[w] = (a & b) | (a & c) | (b & c);
+      for (Word left = (a ^ b) | (a ^ c); left != 0; left &= left - 1) {
+        const int bit = std::countr_zero(left);
+        const int own = static_cast<int>((a >> bit & 1) + (b >> bit & 1) + (c >> bit & 1));
+        settle(o.majority.bits[w], w, bit, k, own);
+      }
     }
   }
 
@@ -148,15 +155,23 @@ class LayerVoter {
       for (std::size_t w = 0; w < width_ * ny_; ++w) along_z_[k].bits[w] ^= along_z_[k - 1].bits[w];
   }
 
+  // Asks the witnesses about a point in dispute.
+  void settle(Word& word, std::size_t w, int bit, std::uint32_t k, int own) const {
+    const double x = static_cast<double>(64 * (w % width_)) + bit, y = static_cast<double>(w / width_);
+    const bool inside = 2 * (own + witnesses_.inside(solid_.grid.point(x, y, k))) > 3 + Witnesses::directions;
+    word = inside ? word | Word{1} << bit : word & ~(Word{1} << bit);
+  }
+
   const TriDexel& solid_;
+  const Witnesses& witnesses_;
   std::uint32_t nx_, ny_, width_, first_;
   std::vector<Layer> along_z_;
 };
 
-Votes count_votes(const TriDexel& solid, std::uint32_t first, std::uint32_t end) {
+Votes count_votes(const TriDexel& solid, const Witnesses& witnesses, std::uint32_t first, std::uint32_t end) {
   Votes votes;
   const std::uint32_t top = solid.grid.size[2] - 1, last = std::min(end, top);
-  LayerVoter voter(solid, first, last);
+  LayerVoter voter(solid, witnesses, first, last);
   Opinions low, high;
   voter.read(first, low);
   for (std::uint32_t k = first; k < end; ++k) {
@@ -236,12 +251,12 @@ class Rebuilder {
 
 }  // namespace
 
-void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const Run& run) {
+void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const Witnesses& witnesses, const Run& run) {
   const std::uint32_t layers = solid.grid.size[2];
   std::vector<Votes> votes((layers + kLayers - 1) / kLayers);
   parallel_tasks(run, votes.size(), [&](std::size_t i) {
     const auto first = static_cast<std::uint32_t>(i) * kLayers;
-    votes[i] = count_votes(solid, first, std::min(first + kLayers, layers));
+    votes[i] = count_votes(solid, witnesses, first, std::min(first + kLayers, layers));
   });
   Edits edits;
   for (Votes& v : votes) {

@@ -151,7 +151,7 @@ TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
     EXPECT_EQ(outcome.status, 2);
     expect_one_sentence(outcome, "not available in this version");
   }
-  for (const char* command : {"boolean", "offset", "repair", "track", "advect", "mill"}) {
+  for (const char* command : {"boolean", "offset", "track", "advect", "mill"}) {
     const Outcome outcome = run({command, "a.obj", "--distance", "1", "-o", "x.ply"});
     EXPECT_EQ(outcome.status, 2) << command;
     expect_one_sentence(outcome, "not available in this version");

@@ -1,0 +1,30 @@
+#pragma once
+/// What rays of other directions say where those of the grid disagree.
+
+#include <vector>
+
+#include "evenmesh/solid.h"
+#include "sample/tri_dexel.h"
+
+namespace evenmesh {
+
+/// A mesh scanned in turned frames: six more directions for any point.
+class Witnesses {
+ public:
+  static constexpr int directions = 6;
+
+  /// Cost: that of two scans.
+  Witnesses(const Mesh& mesh, double spacing, Winding winding, Run& run);
+
+  /// In how many of the directions the ray next to p has p inside. Cost: about 0.3 µs.
+  int inside(const Vec3& p) const;
+
+ private:
+  struct Frame {
+    Affine turn;
+    TriDexel rays;
+  };
+  std::vector<Frame> frames_;
+};
+
+}  // namespace evenmesh
