@@ -30,6 +30,8 @@ using Action = std::function<int()>;
 /// Each adds its subcommand to `app`, which sets `action` when it is the one chosen.
 void add_mesh_command(CLI::App& app, Action& action);
 void add_wrap_command(CLI::App& app, Action& action);
+void add_boolean_command(CLI::App& app, Action& action);
+void add_offset_command(CLI::App& app, Action& action);
 void add_info_command(CLI::App& app, Action& action);
 void add_compare_command(CLI::App& app, Action& action);
 void add_gallery_command(CLI::App& app, Action& action);

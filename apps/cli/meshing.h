@@ -2,6 +2,8 @@
 /// The options that all meshing commands share, and the run behind them.
 
 #include <CLI/CLI.hpp>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,9 +28,19 @@ struct MeshingArguments {
   bool wrap = false;
 };
 
+/// What a command makes of its inputs before they are meshed.
+struct Operation {
+  InputCount inputs{};
+  /// The shape to mesh; none: the only input as it is.
+  std::function<Shape(std::vector<Shape>)> combine{};
+  std::map<std::string, std::string> options{};  ///< of the command itself, for --json
+};
+
+/// INPUT, -e and -D. @param what  help of INPUT, which may be several files
+void add_input_options(CLI::App& app, MeshingArguments& arguments, const std::string& what);
 void add_meshing_options(CLI::App& app, MeshingArguments& arguments);
 
-/// Reads the input, meshes it, writes mesh and reports, prints the summary; returns the exit status.
-int run_meshing(MeshingArguments arguments);
+/// Reads the inputs, makes the shape, meshes it, writes mesh and reports, prints the summary; returns the exit status.
+int run_meshing(MeshingArguments arguments, const Operation& operation = {});
 
 }  // namespace evenmesh::cli

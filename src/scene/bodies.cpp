@@ -80,12 +80,22 @@ class Layers {
       for (const Contour& contour : outline_.contours) {
         const auto n = static_cast<std::uint32_t>(contour.size());
         for (std::uint32_t i = 0; i < n; ++i) {
-          const std::uint32_t p = first + i, q = first + (i + 1) % n;
-          mesh.triangles.push_back({here + p, here + q, there + q});
-          mesh.triangles.push_back({here + p, there + q, there + p});
+          add_quad(mesh, here + first + i, here + first + (i + 1) % n, there + first + (i + 1) % n, there + first + i);
         }
         first += n;
       }
+    }
+  }
+
+  /// Cut along the shorter diagonal.
+  static void add_quad(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    const auto& v = mesh.vertices;
+    if (squared_norm(v[b] - v[d]) < squared_norm(v[a] - v[c])) {
+      mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({b, c, d});
+    } else {
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
     }
   }
 
