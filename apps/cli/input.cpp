@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 #include "evenmesh/io.h"
@@ -38,7 +39,8 @@ bool ends_with_ignoring_case(std::string_view text, std::string_view ending) {
 
 /// The first bytes of a file, empty where there is none: whoever reads it says what is wrong with it.
 std::string head_of(const std::string& name) {
-  if (name == "-" || !std::filesystem::is_regular_file(name)) return "";
+  std::error_code unknown;
+  if (name == "-" || !std::filesystem::is_regular_file(name, unknown)) return "";
   std::ifstream file(name, std::ios::binary);
   std::string head(4096, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));

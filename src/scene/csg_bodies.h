@@ -23,7 +23,7 @@ class CsgBodies {
   std::optional<Outline> flat(const CsgNode& node) const;
 
   std::optional<LinearExtrusion> linear_extrusion(const CsgNode& node) const;
-  /// @param reach  largest distance of the outline from the axis; the side it lies on
+  /// @param reach  largest distance of the outline from the axis
   std::optional<Revolution> revolution(const CsgNode& node, double reach) const;
   Affine matrix(const CsgNode& node) const;
 
