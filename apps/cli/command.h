@@ -31,6 +31,8 @@ using Action = std::function<int()>;
 void add_mesh_command(CLI::App& app, Action& action);
 void add_wrap_command(CLI::App& app, Action& action);
 void add_repair_command(CLI::App& app, Action& action);
+void add_boolean_command(CLI::App& app, Action& action);
+void add_offset_command(CLI::App& app, Action& action);
 void add_info_command(CLI::App& app, Action& action);
 void add_compare_command(CLI::App& app, Action& action);
 void add_gallery_command(CLI::App& app, Action& action);

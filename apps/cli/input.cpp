@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 #include "evenmesh/io.h"
+#include "evenmesh/scene.h"
 #include "values.h"
 
 namespace evenmesh::cli {
@@ -21,7 +24,6 @@ struct PlannedKind {
 constexpr std::array planned_kinds{
     PlannedKind{".glsl", "reading a distance function in GLSL"},
     PlannedKind{".frag", "reading a distance function in GLSL"},
-    PlannedKind{".json", "reading a scene file"},
     PlannedKind{".vdb", "reading an OpenVDB volume"},
     PlannedKind{".nii", "reading a NIfTI volume"},
     PlannedKind{".nii.gz", "reading a NIfTI volume"},
@@ -35,17 +37,28 @@ bool ends_with_ignoring_case(std::string_view text, std::string_view ending) {
          });
 }
 
+/// The first bytes of a file, empty where there is none: whoever reads it says what is wrong with it.
+std::string head_of(const std::string& name) {
+  std::error_code unknown;
+  if (name == "-" || !std::filesystem::is_regular_file(name, unknown)) return "";
+  std::ifstream file(name, std::ios::binary);
+  std::string head(4096, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head;
+}
+
+bool names_a_scene(const std::string& name) {
+  return is_scene(name, head_of(name));
+}
+
 /// Refuses inputs that are documented but not built yet, unless the file holds a mesh under a misleading name.
 void refuse_planned_kinds(const std::string& name) {
   const auto kind = std::find_if(planned_kinds.begin(), planned_kinds.end(),
                                  [&](const PlannedKind& k) { return ends_with_ignoring_case(name, k.extension); });
   if (kind == planned_kinds.end()) return;
-  std::ifstream file(name, std::ios::binary);
-  if (!file) return;  // whoever reads it says what is wrong with it
-  std::string head(4096, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  if (!format_of_content(head)) not_available(fmt::format("{} ({})", kind->what, name));
+  const std::string head = head_of(name);
+  if (!head.empty() && !format_of_content(head)) not_available(fmt::format("{} ({})", kind->what, name));
 }
 
 /// Refuses what names no file, or a file that cannot be read yet.
@@ -54,7 +67,22 @@ void check_file(const std::string& command, const std::string& name) {
     throw InvalidInput(fmt::format("{} takes a mesh file; make one first: evenmesh mesh {} -o {}.ply", command, name,
                                    name.substr(gallery_prefix.size())));
   }
+  if (names_a_scene(name)) {
+    throw InvalidInput(
+        fmt::format("{} takes a mesh file, {} is a scene; make a mesh of it first: evenmesh mesh {} -o x.ply", command,
+                    name, name));
+  }
   refuse_planned_kinds(name);
+}
+
+Shape read_one(const std::string& name, Run& run) {
+  if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
+  if (names_a_scene(name)) return read_scene(name, run);
+  refuse_planned_kinds(name);
+  const std::string title = name == "-" ? "standard input" : name;
+  std::variant<Mesh, PointCloud> contents = read_mesh_or_points(name, run);
+  if (auto* points = std::get_if<PointCloud>(&contents)) return shape_from_points(std::move(*points), title);
+  return shape_from_mesh(std::get<Mesh>(std::move(contents)), title);
 }
 
 }  // namespace
@@ -69,30 +97,36 @@ std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::
   return read_mesh_or_points(name, run);
 }
 
-void check_input(const InputArguments& input) {
-  const std::size_t count = input.positional.size() + input.expressions.size();
-  if (count == 0) {
-    throw InvalidInput("no input; name a mesh file, '-' for standard input, gallery:NAME, or an expression after -e");
+void check_input(const InputArguments& input, const InputCount& count) {
+  const std::size_t given = input.positional.size() + input.expressions.size();
+  if (given == 0) {
+    throw InvalidInput(
+        "no input; name a mesh file, a scene, '-' for standard input, gallery:NAME, or an expression after -e");
   }
-  if (count > 1) {
-    throw InvalidInput(fmt::format("{} inputs where one is taken: '{}' and '{}'{}", count,
+  if (given < count.least) {
+    throw InvalidInput(fmt::format("{} input where {} or more are needed", given, count.least));
+  }
+  if (given > count.most) {  // which is then 1
+    throw InvalidInput(fmt::format("{} inputs where one is taken: '{}' and '{}'{}", given,
                                    input.positional.empty() ? input.expressions[0] : input.positional[0],
                                    input.expressions.empty() ? input.positional[1] : input.expressions.back(),
-                                   count > 2 ? ", …" : ""));
+                                   given > 2 ? ", …" : ""));
+  }
+  if (std::count(input.positional.begin(), input.positional.end(), "-") > 1) {
+    throw InvalidInput("only one of the inputs can come from standard input");
   }
   if (input.expressions.empty() && !input.parameters.empty()) {
     throw InvalidInput("-D gives a parameter of an expression; it needs an expression after -e");
   }
 }
 
-Shape read_shape(const InputArguments& input, const Box& bounds, Run& run) {
-  if (!input.expressions.empty()) return shape_from_expression(input.expressions[0], input.parameters, bounds);
-  const std::string& name = input.positional[0];
-  if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
-  const std::string title = name == "-" ? "standard input" : name;
-  std::variant<Mesh, PointCloud> contents = read_file("mesh", name, run);
-  if (auto* points = std::get_if<PointCloud>(&contents)) return shape_from_points(std::move(*points), title);
-  return shape_from_mesh(std::get<Mesh>(std::move(contents)), title);
+std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, Run& run) {
+  std::vector<Shape> shapes;
+  for (const std::string& name : input.positional) shapes.push_back(read_one(name, run));
+  for (const std::string& expression : input.expressions) {
+    shapes.push_back(shape_from_expression(expression, input.parameters, bounds));
+  }
+  return shapes;
 }
 
 }  // namespace evenmesh::cli

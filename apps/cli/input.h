@@ -1,6 +1,7 @@
 #pragma once
-/// Inputs of the commands: files, expressions, built-in shapes, standard input.
+/// Inputs of the commands: files, scenes, expressions, built-in shapes, standard input.
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <variant>
@@ -20,19 +21,25 @@ struct InputArguments {
   std::map<std::string, double> parameters;  ///< -D
 };
 
-/// @throws InvalidInput  no input, several of them, or parameters without an expression
-void check_input(const InputArguments& input);
+/// How many inputs a command takes.
+struct InputCount {
+  std::size_t least = 1, most = 1;
+};
 
-/// The one shape that the checked arguments name.
+/// @throws InvalidInput  too few inputs, too many, or parameters without an expression
+void check_input(const InputArguments& input, const InputCount& count = {});
+
+/// The shapes that the checked arguments name: files and built-in shapes first, then expressions.
+/// @param bounds  of the expressions, empty: to be found
 /// @throws InvalidInput   an expression or name that is wrong
 /// @throws NotAvailable   an input kind that this version does not contain
 /// @throws UnusableInput  a file that cannot be read
-Shape read_shape(const InputArguments& input, const Box& bounds, Run& run);
+std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, Run& run);
 
-/// A mesh file, or standard input for "-". Throws like read_shape.
+/// A mesh file, or standard input for "-". Throws like read_shapes.
 Mesh read_mesh_file(const std::string& command, const std::string& name, Run& run);
 
-/// A file of a mesh or of points, or standard input for "-". Throws like read_shape.
+/// A file of a mesh or of points, or standard input for "-". Throws like read_shapes.
 std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::string& name, Run& run);
 
 }  // namespace evenmesh::cli

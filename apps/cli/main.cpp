@@ -37,6 +37,8 @@ int parse_and_act(int argc, char** argv) {
   cli::add_mesh_command(app, action);
   cli::add_wrap_command(app, action);
   cli::add_repair_command(app, action);
+  cli::add_boolean_command(app, action);
+  cli::add_offset_command(app, action);
   cli::add_info_command(app, action);
   cli::add_compare_command(app, action);
   cli::add_gallery_command(app, action);

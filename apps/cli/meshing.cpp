@@ -75,16 +75,20 @@ MeshOptions mesh_options(const MeshingArguments& a) {
   return options;
 }
 
-Json options_json(const MeshingArguments& a, unsigned threads) {
+Json options_json(const MeshingArguments& a, const Operation& operation, unsigned threads) {
   Json json = Json::object();
   const auto given = [&](const char* key, const std::string& text) {
     if (!text.empty()) json[key] = text;
   };
-  if (a.input.positional.empty()) {
+  if (operation.inputs.most > 1) {
+    json["inputs"] = a.input.positional;
+    json["expressions"] = a.input.expressions;
+  } else if (a.input.positional.empty()) {
     given("expression", a.input.expressions.at(0));
   } else {
     given("input", a.input.positional[0]);
   }
+  for (const auto& [name, value] : operation.options) json[name] = value;
   for (const auto& [name, value] : a.input.parameters) json["parameters"][name] = value;
   given("output", a.output);
   given("vertices", a.vertices);
@@ -110,10 +114,10 @@ Json options_json(const MeshingArguments& a, unsigned threads) {
   return json;
 }
 
-std::string run_json(const Report& report, const MeshingArguments& a, unsigned threads) {
+std::string run_json(const Report& report, const MeshingArguments& a, const Operation& operation, unsigned threads) {
   Json json = Json::parse(report_json(report));
   json["version"] = EVENMESH_VERSION;
-  json["options"] = options_json(a, threads);
+  json["options"] = options_json(a, operation, threads);
   return json.dump(2) + "\n";
 }
 
@@ -126,9 +130,9 @@ struct Plan {
   Talk talk = Talk::normal;
 };
 
-Plan check(MeshingArguments& a) {
+Plan check(MeshingArguments& a, const Operation& operation) {
   for (const std::string& text : a.definitions) a.input.parameters.insert(definition("-D", text));
-  check_input(a.input);
+  check_input(a.input, operation.inputs);
   refuse_planned_options(a);
   Plan plan;
   plan.options = mesh_options(a);
@@ -172,9 +176,9 @@ bool tell_notices(const Report& report, Talk talk) {
 
 }  // namespace
 
-int run_meshing(MeshingArguments a) {
+int run_meshing(MeshingArguments a, const Operation& operation) {
   const auto start = std::chrono::steady_clock::now();
-  const Plan plan = check(a);
+  const Plan plan = check(a, operation);
   Run run(plan.threads);
   const CancelOnInterrupt interrupt(run);
   MeshResult result;
@@ -182,10 +186,11 @@ int run_meshing(MeshingArguments a) {
   double reading = 0;
   {
     Terminal terminal(run, plan.talk, a.progress);
-    Shape shape = read_shape(a.input, plan.options.bounds.value_or(Box{}), run);
+    std::vector<Shape> inputs = read_shapes(a.input, plan.options.bounds.value_or(Box{}), run);
+    Shape shape = operation.combine ? operation.combine(std::move(inputs)) : std::move(inputs.at(0));
     if (plan.outliers) shape = without_outliers(shape, *plan.outliers, plan.talk, run);
     MeshOptions options = plan.options;
-    if (a.prepare) a.prepare(shape, options, plan.talk);
+    if (operation.prepare) operation.prepare(shape, options, plan.talk);
     reading = seconds_since(start);
     result = mesh_shape(shape, options, run);
     auto& seconds = result.report.seconds;
@@ -201,7 +206,7 @@ int run_meshing(MeshingArguments a) {
     result.report.seconds.emplace_back("write", seconds_since(writing));
     if (!a.report.empty()) write_output(a.report, html);
     if (!a.dump_shell.empty()) write_output(a.dump_shell, serialize_vdb(result.shell));
-    if (!a.json.empty()) write_output(a.json, run_json(result.report, a, plan.threads));
+    if (!a.json.empty()) write_output(a.json, run_json(result.report, a, operation, plan.threads));
   }
   const bool kept = tell_notices(result.report, plan.talk);
   if (plan.talk != Talk::quiet) {

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,13 +27,23 @@ struct MeshingArguments {
   std::string error, max_cycle, dump_dexels, entry;  ///< documented, not available yet
   bool quiet = false, verbose = false;
   bool wrap = false;
-  /// What a command does with the shape that was read, and with the options, before it is meshed.
-  std::function<void(Shape&, MeshOptions&, Talk)> prepare;
 };
 
+/// What a command makes of its inputs before they are meshed.
+struct Operation {
+  InputCount inputs{};
+  /// The shape to mesh; none: the only input as it is.
+  std::function<Shape(std::vector<Shape>)> combine{};
+  /// Changes the shape and the options, once the shape is known.
+  std::function<void(Shape&, MeshOptions&, Talk)> prepare{};
+  std::map<std::string, std::string> options{};  ///< of the command itself, for --json
+};
+
+/// INPUT, -e and -D. @param what  help of INPUT, which may be several files
+void add_input_options(CLI::App& app, MeshingArguments& arguments, const std::string& what);
 void add_meshing_options(CLI::App& app, MeshingArguments& arguments);
 
-/// Reads the input, meshes it, writes mesh and reports, prints the summary; returns the exit status.
-int run_meshing(MeshingArguments arguments);
+/// Reads the inputs, makes the shape, meshes it, writes mesh and reports, prints the summary; returns the exit status.
+int run_meshing(MeshingArguments arguments, const Operation& operation = {});
 
 }  // namespace evenmesh::cli

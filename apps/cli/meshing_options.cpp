@@ -78,6 +78,23 @@ void add_how(CLI::App& app, MeshingArguments& a) {
 
 }  // namespace
 
+void add_input_options(CLI::App& app, MeshingArguments& a, const std::string& what) {
+  const std::string group = "What goes in";
+  app.add_option("INPUT", a.input.positional, what)->type_name("");
+  app.add_option("-e,--expression", a.input.expressions,
+                 "solid where an expression in x, y, z is below 0, instead of INPUT")
+      ->type_name("EXPR")
+      ->allow_extra_args(false)
+      ->group(group);
+  app.add_option("-D,--define", a.definitions, "value of a parameter of the expression, e.g. -D a=0.5")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false)
+      ->group(group);
+  app.add_option("--entry", a.entry, "function in a GLSL file; not available in this version")
+      ->type_name("NAME")
+      ->group(group);
+}
+
 void add_meshing_options(CLI::App& app, MeshingArguments& a) {
   add_what(app, a);
   add_effort(app, a);

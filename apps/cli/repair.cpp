@@ -37,7 +37,8 @@ std::string said_of(const MeshDefects& d) {
 
 int run_repair(RepairArguments a) {
   choice("--hull", a.hull, {"auto", "outer", "oriented", "all", "wrap"});
-  a.meshing.prepare = [hull = a.hull](Shape& shape, MeshOptions& options, Talk talk) {
+  Operation operation{.options = {{"hull", a.hull}}};
+  operation.prepare = [hull = a.hull](Shape& shape, MeshOptions& options, Talk talk) {
     if (!shape.mesh())
       throw InvalidInput("repair takes a triangle mesh; other inputs have nothing to repair: use mesh");
     MeshDefects defects;
@@ -56,7 +57,7 @@ int run_repair(RepairArguments a) {
     options.fill_cavities = hull != "all";
     if (hull == "oriented") shape.winding = Winding::positive;
   };
-  return run_meshing(std::move(a.meshing));
+  return run_meshing(std::move(a.meshing), operation);
 }
 
 }  // namespace

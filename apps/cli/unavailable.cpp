@@ -13,8 +13,6 @@ void add_unavailable_commands(CLI::App& app, Action& action) {
     const char *name, *what;
   };
   constexpr std::array planned{
-      Planned{"boolean", "union, intersection or difference of solids"},
-      Planned{"offset", "a surface at a distance from another"},
       Planned{"track", "meshes of a moving surface"},
       Planned{"advect", "a surface in a velocity field"},
       Planned{"mill", "a solid cut along a tool path"},

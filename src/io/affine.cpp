@@ -4,7 +4,7 @@
 
 namespace evenmesh {
 
-void append_placed(const Source& source, const Mesh& part, const Affine& placement, Mesh& mesh) {
+void append_placed(const Source& source, const Mesh& part, const PartPlacement& placement, Mesh& mesh) {
   const std::size_t base = mesh.vertices.size();
   if (base + part.vertices.size() > max_vertices) fail(source, "has more than 4,294,967,295 vertices; split it");
   for (const Vec3& v : part.vertices) mesh.vertices.push_back(placement(v));

@@ -8,7 +8,7 @@
 
 namespace evenmesh {
 
-struct Affine {
+struct PartPlacement {
   std::array<Vec3, 3> columns{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
   Vec3 translation;
 
@@ -17,13 +17,13 @@ struct Affine {
   /// Mirrors, so that triangles must be turned to keep their outside.
   bool mirrors() const { return dot(cross(columns[0], columns[1]), columns[2]) < 0; }
   /// First `inner`, then `outer`.
-  friend Affine operator*(const Affine& outer, const Affine& inner) {
+  friend PartPlacement operator*(const PartPlacement& outer, const PartPlacement& inner) {
     return {{outer.linear(inner.columns[0]), outer.linear(inner.columns[1]), outer.linear(inner.columns[2])},
             outer(inner.translation)};
   }
 };
 
 /// Appends a placed copy of `part` to `mesh`.
-void append_placed(const Source& source, const Mesh& part, const Affine& placement, Mesh& mesh);
+void append_placed(const Source& source, const Mesh& part, const PartPlacement& placement, Mesh& mesh);
 
 }  // namespace evenmesh

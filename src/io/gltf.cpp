@@ -42,7 +42,7 @@ class SceneReader {
  private:
   struct Visit {
     std::size_t node = 0, depth = 0;
-    Affine outer;
+    PartPlacement outer;
   };
 
   /// Nodes of the default scene; without scenes, all nodes that are nobody's child.
@@ -66,7 +66,7 @@ class SceneReader {
   /// Depth first, in the order of the file.
   void walk(const std::vector<std::size_t>& from, const Json& nodes) {
     std::vector<Visit> stack;
-    const auto push = [&](const std::vector<std::size_t>& children, std::size_t depth, const Affine& outer) {
+    const auto push = [&](const std::vector<std::size_t>& children, std::size_t depth, const PartPlacement& outer) {
       budget_.spend(InstanceBudget::visit * children.size());
       for (auto child = children.rbegin(); child != children.rend(); ++child) stack.push_back({*child, depth, outer});
     };
@@ -76,13 +76,13 @@ class SceneReader {
       stack.pop_back();
       if (visit.depth > nodes.size()) fail(source_, "has nodes that are children of themselves; export the file again");
       const Json& node = nodes[visit.node];
-      const Affine placement = visit.outer * local_placement(node);
+      const PartPlacement placement = visit.outer * local_placement(node);
       if (const auto mesh = data_.index(node, "mesh", data_.list("meshes").size())) place(*mesh, placement);
       push(data_.indices(node, "children", nodes.size()), visit.depth + 1, placement);
     }
   }
 
-  Affine local_placement(const Json& node) const {
+  PartPlacement local_placement(const Json& node) const {
     if (node.contains("matrix")) {
       const auto m = data_.numbers<16>(node, "matrix", {});
       return {{Vec3{m[0], m[1], m[2]}, Vec3{m[4], m[5], m[6]}, Vec3{m[8], m[9], m[10]}}, {m[12], m[13], m[14]}};
@@ -101,7 +101,7 @@ class SceneReader {
   }
 
   /// Primitives that share positions share vertices.
-  void place(std::size_t mesh, const Affine& placement) {
+  void place(std::size_t mesh, const PartPlacement& placement) {
     std::map<std::size_t, std::uint32_t> base_of_accessor;
     for (const Json& primitive : data_.list_in(data_.list("meshes")[mesh], "primitives")) {
       source_.run->throw_if_cancelled();
@@ -116,7 +116,7 @@ class SceneReader {
     }
   }
 
-  void append(std::size_t position, std::optional<std::size_t> indices, Mode mode, const Affine& placement,
+  void append(std::size_t position, std::optional<std::size_t> indices, Mode mode, const PartPlacement& placement,
               std::map<std::size_t, std::uint32_t>& base_of_accessor) {
     const Accessor points = data_.positions(position);
     if (!indices && mode == Mode::triangles) {  // loose triangles, as in STL

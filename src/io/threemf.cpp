@@ -23,7 +23,7 @@ namespace {
 struct Reference {
   std::string path;  ///< empty: the same part
   std::uint64_t object = 0;
-  Affine placement;
+  PartPlacement placement;
 };
 
 struct Object {
@@ -127,8 +127,8 @@ class ModelParser {
   }
 
   /// Twelve numbers, row after row, for row vectors (core specification §3.3).
-  Affine placement(std::string_view text) const {
-    Affine affine;
+  PartPlacement placement(std::string_view text) const {
+    PartPlacement affine;
     const char* p = text.data();
     const char* end = p + text.size();
     for (int i = 0; i < 12; ++i) {
@@ -196,12 +196,12 @@ class PackageReader {
     return models_.emplace(path, ModelParser({text, name, source_.run}).parse()).first->second;
   }
 
-  void append(const Mesh& part, const Affine& placement) {
+  void append(const Mesh& part, const PartPlacement& placement) {
     budget_.spend(part.vertices.size() + part.triangles.size());
     append_placed(source_, part, placement, mesh_);
   }
 
-  void place(const Reference& reference, const std::string& here, const Affine& outer, int depth) {
+  void place(const Reference& reference, const std::string& here, const PartPlacement& outer, int depth) {
     constexpr int deepest = 200;
     budget_.spend(InstanceBudget::visit);
     if (depth > deepest) fail(source_, "has components that hold each other, or are nested more than 200 deep");
@@ -211,7 +211,7 @@ class PackageReader {
     if (object == part.objects.end()) {
       fail(source_, fmt::format("refers to object {}, which it does not hold", reference.object));
     }
-    const Affine placement = outer * reference.placement;
+    const PartPlacement placement = outer * reference.placement;
     append(object->second.mesh, placement);
     for (const Reference& component : object->second.components) place(component, path, placement, depth + 1);
   }

@@ -158,7 +158,9 @@ class LayerVoter {
   // Asks the witnesses about a point in dispute.
   void settle(Word& word, std::size_t w, int bit, std::uint32_t k, int own) const {
     const double x = static_cast<double>(64 * (w % width_)) + bit, y = static_cast<double>(w / width_);
-    const bool inside = 2 * (own + witnesses_.inside(solid_.grid.point(x, y, k))) > 3 + Witnesses::directions;
+    // The grid's own rays meet the point itself: three votes each.
+    const int votes = 3 * own + witnesses_.inside(solid_.grid.point(x, y, k));
+    const bool inside = 2 * votes > 3 * 3 + Witnesses::directions;
     word = inside ? word | Word{1} << bit : word & ~(Word{1} << bit);
   }
 

@@ -60,6 +60,8 @@ struct Case {
 
 TEST_F(Usage, WrongUsageIsStatus2) {
   write("a.obj", tetrahedron_obj);
+  write("s.json", R"({"mesh": "a.obj"})");
+  write("p.xyz", "0 0 0\n1 0 0\n0 1 0\n");
   std::filesystem::create_directory(folder / "folder");
   const std::string in = "gallery:sphere";
   const std::vector<Case> cases{
@@ -114,6 +116,19 @@ TEST_F(Usage, WrongUsageIsStatus2) {
       {{"gallery", "-o", "x.ply"}, "NAME"},
       {{"info"}, "MESH"},
       {{"info", in}, "mesh file"},
+      {{"info", "s.json"}, "s.json is a scene"},
+      {{"boolean", "-o", "x.ply"}, "OPERATION"},
+      {{"boolean", "sum", in, in, "-o", "x.ply"}, "union, intersection, difference"},
+      {{"boolean", "union", in, "-o", "x.ply"}, "1 input where 2 or more"},
+      {{"boolean", "union", "-o", "x.ply"}, "no input"},
+      {{"boolean", "union", "-", "-", "-o", "x.ply"}, "standard input"},
+      {{"boolean", "difference", in, "p.xyz", "-o", "x.ply"}, "is a point cloud and has no inside"},
+      {{"boolean", "union", in, in}, "no output"},
+      {{"offset", in, "-o", "x.ply"}, "--distance, --closing, --opening"},
+      {{"offset", in, "--distance", "1", "--closing", "1", "-o", "x.ply"}, "exclude each other"},
+      {{"offset", in, "--distance", "far", "-o", "x.ply"}, "--distance"},
+      {{"offset", in, "--opening", "-1", "-o", "x.ply"}, "above 0"},
+      {{"offset", in, in, "--distance", "1", "-o", "x.ply"}, "2 inputs"},
       {{"compare", "a.obj"}, "B"},
       {{"compare", "a.obj", "a.obj", "--samples", "0"}, "--samples"},
       {{"render", "a.obj"}, "no output"},
@@ -127,12 +142,12 @@ TEST_F(Usage, WrongUsageIsStatus2) {
     EXPECT_EQ(outcome.status, 2);
     expect_one_sentence(outcome, c.fragment);
   }
-  EXPECT_EQ(names(), (Words{"a.obj", "folder"})) << "a wrong command line leaves nothing behind";
+  EXPECT_EQ(names(), (Words{"a.obj", "folder", "p.xyz", "s.json"})) << "a wrong command line leaves nothing behind";
 }
 
 TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
   write("a.obj", tetrahedron_obj);
-  for (const char* name : {"s.glsl", "s.frag", "s.json", "s.vdb", "s.nii", "s.nii.gz", "s.nrrd", "s.tdx"}) {
+  for (const char* name : {"s.glsl", "s.frag", "s.vdb", "s.nii", "s.nii.gz", "s.nrrd", "s.tdx"}) {
     write(name, "1 2 3\n");
     const Outcome outcome = run({"mesh", name, "-o", "x.ply"});
     EXPECT_EQ(outcome.status, 2) << name;
@@ -151,12 +166,35 @@ TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
     EXPECT_EQ(outcome.status, 2);
     expect_one_sentence(outcome, "not available in this version");
   }
-  for (const char* command : {"boolean", "offset", "track", "advect", "mill"}) {
+  for (const char* command : {"track", "advect", "mill"}) {
     const Outcome outcome = run({command, "a.obj", "--distance", "1", "-o", "x.ply"});
     EXPECT_EQ(outcome.status, 2) << command;
     expect_one_sentence(outcome, "not available in this version");
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "x.ply"));
+}
+
+TEST_F(Usage, WrongScenesAreStatus3AndSayWhere) {
+  write("axis.json", R"({"transform": {"rotate": {"axis": [0,0,0], "degrees": 9}}, "of": {"gallery": "sphere"}})");
+  write("file.json", R"({"union": [{"mesh": "none.stl"}]})");
+  write("text.json", "1 2 3\n");
+  write("hull.csg", "group() {\n hull() { cube(); }\n}\n");
+  const std::vector<std::pair<const char*, const char*>> cases{
+      {"axis.json", "axis.json: transform.rotate.axis: needs three numbers, not all zero"},
+      {"file.json", "file.json: union[0].mesh: there is no file 'none.stl'"},
+      {"text.json", "text.json: line 1, column 3: this is no JSON"},
+      {"hull.csg", "hull.csg: line 2, column 2: the OpenSCAD node 'hull' is not supported"},
+      {"missing.json", "missing.json: no such file"},
+  };
+  for (const auto& [name, words] : cases) {
+    const Outcome outcome = run({"mesh", name, "-o", "x.ply"});
+    EXPECT_EQ(outcome.status, 3) << name;
+    expect_one_sentence(outcome, words);
+  }
+  write("glsl.json", R"({"glsl": "a.frag"})");
+  const Outcome outcome = run({"mesh", "glsl.json", "-o", "x.ply"});
+  EXPECT_EQ(outcome.status, 2);
+  expect_one_sentence(outcome, "not available in this version");
 }
 
 TEST_F(Usage, UnreadableInputIsStatus3) {

@@ -338,3 +338,81 @@ save("points/bad_truncated.ply", point_ply(LE, "xyz", V).encode() + b"\0" * 47)
 save("points/bad_huge.ply", point_ply(LE, XYZN, V).replace("vertex 4", f"vertex {10**15}"))
 save("points/bad_none.ply", point_ply("ascii", "xyz", []))
 save("points/bad_mesh.ply", ply_header("ascii") + ASCII_V + ASCII_F)
+
+# Scenes -------------------------------------------------------------------------------------------------------------
+BALL = {"implicit": "x^2+y^2+z^2-R^2", "parameters": {"R": 1}, "bounds": [-2, -2, -2, 2, 2, 2]}
+TURN = {"scale": 0.3, "rotate": {"axis": [0, 0, 1], "degrees": 30}, "translate": [0, 0, 1]}
+for scene, tree in {
+    "sets": {"name": "sets", "units": "mm", "difference": [{"union": [BALL, {"gallery": "torus"}]},
+             {"intersection": [BALL, {"gallery": "sphere"}]}]},
+    "moved": {"transform": TURN, "of": {"transform": {"scale": [1, 2, -1]}, "of": {"mesh": "../off/plain.off"}}},
+    "matrix": {"transform": {"matrix": [[0, -1, 0, 5], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}, "of": BALL},
+    "offsets": {"closing": 0.1, "of": {"opening": 0.1, "of": {"offset": -0.2, "of": BALL}}},
+    "points": {"$schema": "../../../docs/scene.schema.json", "points": "../points/plain.xyz"},
+    "bad_axis": {"union": [BALL, {"transform": {"rotate": {"axis": [0, 0, 0], "degrees": 1}}, "of": BALL}]},
+    "bad_two_keys": {"union": [BALL], "gallery": "sphere"},
+    "bad_key": {"unite": [BALL]},
+    "bad_file": {"mesh": "none.stl"},
+    "bad_points": {"union": [{"points": "../points/plain.xyz"}, BALL]},
+    "bad_formula": {"implicit": "x^2+("},
+    "bad_singular": {"transform": {"scale": [1, 0, 1]}, "of": BALL},
+    "bad_matrix": {"transform": {"matrix": 16 * [1]}, "of": BALL},
+    "bad_apart": {"intersection": [BALL, {"transform": {"translate": [9, 0, 0]}, "of": BALL}]},
+}.items():
+    save(f"scene/{scene}.json", json.dumps(tree, indent=1) + "\n")
+save("scene/bad_deep.json", 600 * '{"union":[' + json.dumps(BALL) + 600 * "]}")
+save("scene/bad_twice.json", '{"gallery": "sphere", "gallery": "torus"}')
+save("scene/bad_comma.json", '{"union": [{"gallery": "sphere"},]}')
+save("scene/bad_cut.json", '{"union": [{"gallery": "sph')
+
+ROUND = "$fn = 0, $fa = 12, $fs = 2, "
+SHIFT = "multmatrix([[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 1e-05], [0, 0, 0, 1]])"
+save("scene/bodies.csg", f"""// written by hand
+cube(size = [1, 2, 3], center = false);
+{SHIFT} {{
+\tsphere({ROUND}r = 1);
+\tcylinder({ROUND}h = 2, r1 = 1, r2 = 0, center = true);
+}}
+polyhedron(points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]);
+""")
+save("scene/sets.csg", f"""difference() {{
+\tgroup() {{
+\t\tcube(size = [4, 4, 4], center = true);
+\t}}
+\tgroup();
+\tcolor([1, 0, 0, 1]) {{
+\t\tsphere({ROUND}r = 2.5);
+\t}}
+\t%cube(size = 9);
+\t#intersection() {{
+\t\tcube();
+\t\trender(convexity = 1) {{ {SHIFT} {{ cube(size = 9, center = true); }} }}
+\t}}
+}}
+""")
+save("scene/extrusions.csg", f"""linear_extrude(height = 2, center = true, convexity = 1, twist = 90, slices = 8, scale = [1, 0.5]) {{
+\tpolygon(points = [[0, 0], [4, 0], [4, 4], [0, 4], [1, 1], [2, 1], [2, 2]], paths = [[0, 1, 2, 3], [4, 5, 6]]);
+}}
+rotate_extrude(angle = 270, convexity = 2, {ROUND[:-2]}) {{
+\t{SHIFT} {{
+\t\tunion() {{ circle({ROUND}r = 1); square(size = [1, 1], center = false); }}
+\t}}
+}}
+linear_extrude(height = 1) {{ polygon(points = [[0, 0], [3, 0], [3, 3], [1, 1], [0, 3]], paths = undef); }}
+""")
+save("scene/import.csg", 'group() {\n\timport(file = "../off/plain.off", layer = "", origin = [0, 0], timestamp = 0);\n}\n')
+save("scene/root.csg", "sphere(); !cube(); /* rest */ cylinder();\n")
+save("scene/star.csg", "linear_extrude(height = 1) { polygon(points = [[0, 3], [2, -3], [-3, 1], [3, 1], [-2, -3]]); }\n")
+save("scene/bad_hull.csg", "hull() {\n\tcube();\n}\n")
+save("scene/bad_flat.csg", "square(size = 1);\n")
+save("scene/bad_nothing.csg", "group();\n")
+save("scene/bad_brace.csg", "union() { cube();\n")
+save("scene/bad_name.csg", "cuboid();\n")
+save("scene/bad_nan.csg", "cube(size = [1, nan, 1]);\n")
+save("scene/bad_index.csg", "polyhedron(points = [[0, 0, 0]], faces = [[0, 1, 2]]);\n")
+save("scene/bad_huge.csg", "sphere($fn = 999999);\n")
+save("scene/bad_axis.csg", "rotate_extrude() { circle(r = 1); }\n")
+save("scene/bad_file.csg", 'import(file = "none.stl");\n')
+save("scene/bad_flattened.csg", "multmatrix([[1,0,0,0],[0,1,0,0],[0,0,0,0],[0,0,0,1]]) { cube(); }\n")
+save("scene/bad_deep.csg", 600 * "group(){" + "cube();" + 600 * "}")
+save("scene/bad_lists.csg", "cube(size = " + 100 * "[" + "1" + 100 * "]" + ");")

@@ -25,6 +25,7 @@ const std::vector<std::string> pipeline{"core", "geometry", "shape", "sample", "
 const std::map<std::string, Names> beside{
     {"measure", {"core", "geometry"}},
     {"io", {"core", "geometry", "shape"}},
+    {"scene", {"core", "geometry", "shape", "io"}},
     {"view", {"core", "geometry", "measure"}},
 };
 
@@ -32,7 +33,7 @@ const std::map<std::string, Names> beside{
 const std::map<std::string, std::string> public_headers{
     {"error.h", "core"},      {"run.h", "core"},        {"mesh.h", "geometry"},       {"shape.h", "shape"},
     {"measure.h", "measure"}, {"io.h", "io"},           {"mesh_shape.h", "pipeline"}, {"render.h", "view"},
-    {"points.h", "geometry"}, {"volume.h", "geometry"},   {"solid.h", "shape"},
+    {"points.h", "geometry"}, {"volume.h", "geometry"}, {"solid.h", "shape"},         {"scene.h", "scene"},
     {"repair.h", "geometry"},
 };
 

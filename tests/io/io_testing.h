@@ -26,7 +26,8 @@ inline std::vector<fs::path> corpus_files(bool points = false) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(corpus_folder())) {
     if (!entry.is_regular_file() || entry.path().extension() == ".py") continue;
-    if ((entry.path().parent_path().filename() == "points") == points) files.push_back(entry.path());
+    const fs::path kind = entry.path().parent_path().filename();
+    if (kind != "scene" && (kind == "points") == points) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;

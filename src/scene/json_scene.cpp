@@ -1,0 +1,247 @@
+/// Scenes as JSON: one node is an object with one key that says what it is (docs/scenes.md).
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "evenmesh/error.h"
+#include "scene/json_node.h"
+#include "scene/json_text.h"
+#include "scene/workshop.h"
+
+namespace evenmesh {
+namespace {
+
+class JsonReader {
+ public:
+  JsonReader(const Source& source, Workshop& workshop, const SceneLimits& limits)
+      : source_(source), workshop_(workshop), limits_(limits) {}
+
+  Shape read() const {
+    // A node takes three levels at most: itself, an array or "transform", a list in it; and a few for the last.
+    const nlohmann::json root = parse_json_text(source_, 3 * limits_.depth + 8);
+    const JsonPlace place(source_, root);
+    Shape shape = node(place, nullptr, 0);
+    shape.name = place.has("name") ? place.member("name").text() : std::string(source_.name);
+    return shape;
+  }
+
+ private:
+  struct Kind {
+    const char* key;
+    std::vector<const char*> beside;  ///< keys that may stand beside it
+    Shape (JsonReader::*read)(const JsonPlace& node, const Affine* placement, std::size_t depth) const;
+  };
+  static const std::vector<Kind>& kinds();
+
+  static std::string kind_list() {
+    std::string list;
+    for (const Kind& kind : kinds()) list += (list.empty() ? "" : ", ") + std::string(kind.key);
+    return list;
+  }
+
+  static const Kind& kind_of(const JsonPlace& place) {
+    if (!place.value().is_object()) place.refuse("needs an object with one of the keys " + kind_list());
+    const Kind* found = nullptr;
+    for (const Kind& kind : kinds()) {
+      if (!place.has(kind.key)) continue;
+      if (found != nullptr) {
+        place.refuse(fmt::format("has both '{}' and '{}'; put them into two nodes", found->key, kind.key));
+      }
+      found = &kind;
+    }
+    if (found == nullptr) place.refuse("needs one of the keys " + kind_list());
+    return *found;
+  }
+
+  static void refuse_other_keys(const JsonPlace& place, const Kind& kind, bool top) {
+    constexpr std::array at_top{"name", "units", "$schema"};
+    for (const auto& [key, unused] : place.value().items()) {
+      const auto is_key = [&name = key](const char* known) { return name == known; };
+      if (key == kind.key || std::any_of(kind.beside.begin(), kind.beside.end(), is_key)) continue;
+      if (!std::any_of(at_top.begin(), at_top.end(), is_key)) {
+        place.refuse(fmt::format("has the unknown key {} beside '{}'; remove it", evenmesh::quoted(key), kind.key));
+      }
+      if (!top) place.refuse(fmt::format("has {}, which is for the top of the file only", evenmesh::quoted(key)));
+    }
+  }
+
+  /// They say what a length of 1 means; nothing is converted.
+  static void check_units(const JsonPlace& place) {
+    if (!place.has("units")) return;
+    const JsonPlace units = place.member("units");
+    const std::string name = units.text();
+    if (name != "mm" && name != "cm" && name != "m" && name != "in") units.refuse("is none of mm, cm, m, in");
+  }
+
+  Shape node(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
+    workshop_.run().throw_if_cancelled();
+    if (depth >= limits_.depth) {
+      place.refuse(fmt::format("is nested too deeply; a scene may have {} nodes within each other", limits_.depth));
+    }
+    const Kind& kind = kind_of(place);
+    refuse_other_keys(place, kind, depth == 0);
+    if (depth == 0) check_units(place);
+    return (this->*kind.read)(place, placement, depth);
+  }
+
+  /// Runs what may complain without knowing where it is.
+  template <typename Make>
+  static auto at(const JsonPlace& place, const Make& make) {
+    try {
+      return make();
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const NotAvailable& error) {
+      throw NotAvailable(place.prefix() + error.what());
+    } catch (const Error& error) {
+      place.refuse(error.what());
+    }
+  }
+
+  std::vector<Shape> operands(const JsonPlace& list, const Affine* placement, std::size_t depth) const {
+    if (!list.value().is_array() || list.value().empty()) list.refuse("needs an array of at least one node");
+    std::vector<Shape> shapes;
+    for (std::size_t i = 0; i < list.value().size(); ++i) {
+      const JsonPlace element = list.element(i);
+      shapes.push_back(node(element, placement, depth + 1));
+      if (shapes.back().points()) element.refuse("is a point cloud, which has no inside; only solids can be combined");
+    }
+    return shapes;
+  }
+
+  Shape read_union(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
+    const JsonPlace list = place.member("union");
+    std::vector<Shape> shapes = operands(list, placement, depth);
+    return at(list, [&] { return unite(std::move(shapes)); });
+  }
+
+  Shape read_intersection(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
+    const JsonPlace list = place.member("intersection");
+    std::vector<Shape> shapes = operands(list, placement, depth);
+    return at(list, [&] { return intersect(std::move(shapes)); });
+  }
+
+  Shape read_difference(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
+    const JsonPlace list = place.member("difference");
+    std::vector<Shape> shapes = operands(list, placement, depth);
+    Shape first = std::move(shapes.front());
+    shapes.erase(shapes.begin());
+    return at(list, [&] { return subtract(std::move(first), std::move(shapes)); });
+  }
+
+  /// The node in "of".
+  Shape inner(const JsonPlace& place, const char* key, const Affine* placement, std::size_t depth) const {
+    if (!place.has("of")) place.refuse(fmt::format("needs 'of', the node that '{}' is done to", key));
+    return node(place.member("of"), placement, depth + 1);
+  }
+
+  /// Offsets are measured where they stand; what is around them moves the result.
+  template <typename Make>
+  Shape distanced(const JsonPlace& place, const char* key, const Affine* placement, std::size_t depth,
+                  const Make& make) const {
+    const JsonPlace distance = place.member(key);
+    const double value = distance.number();
+    Shape shape = inner(place, key, nullptr, depth);
+    return at(distance, [&] { return workshop_.placed(make(std::move(shape), value), placement); });
+  }
+
+  Shape read_offset(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
+    return distanced(place, "offset", placement, depth, offset);
+  }
+  Shape read_closing(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
+    return distanced(place, "closing", placement, depth, closing);
+  }
+  Shape read_opening(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
+    return distanced(place, "opening", placement, depth, opening);
+  }
+
+  /// Handed down to the leaves, so that each of them is moved once.
+  Shape read_moved(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
+    const JsonPlace transform = place.member("transform");
+    const Affine own = read_transform(transform);
+    const Affine both = placement ? placement->after(own) : own;
+    at(transform, [&] { return both.inverse(); });
+    return inner(place, "transform", &both, depth);
+  }
+
+  Shape read_mesh_node(const JsonPlace& place, const Affine* placement, std::size_t) const {
+    const JsonPlace given = place.member("mesh");
+    const std::string name = given.text();
+    return at(given, [&] { return workshop_.placed(workshop_.mesh_file(name), placement); });
+  }
+
+  Shape read_points_node(const JsonPlace& place, const Affine* placement, std::size_t) const {
+    const JsonPlace given = place.member("points");
+    const std::string name = given.text();
+    return at(given, [&] { return workshop_.placed(workshop_.point_file(name), placement); });
+  }
+
+  Shape read_gallery(const JsonPlace& place, const Affine* placement, std::size_t) const {
+    const JsonPlace given = place.member("gallery");
+    const std::string name = given.text();
+    return at(given, [&] { return workshop_.placed(gallery_shape(name), placement); });
+  }
+
+  Shape read_implicit(const JsonPlace& place, const Affine* placement, std::size_t) const {
+    Box bounds;
+    if (place.has("bounds")) {
+      const JsonPlace six = place.member("bounds");
+      const auto b = six.numbers<6>();
+      bounds = {{b[0], b[1], b[2]}, {b[3], b[4], b[5]}};
+      if (!(b[0] < b[3] && b[1] < b[4] && b[2] < b[5])) six.refuse("needs x0 < x1, y0 < y1 and z0 < z1");
+    }
+    std::map<std::string, double> parameters;
+    if (place.has("parameters")) {
+      const JsonPlace list = place.member("parameters");
+      if (!list.value().is_object()) list.refuse("needs an object of numbers, one for each name");
+      for (const auto& [name, unused] : list.value().items()) parameters[name] = list.member(name.c_str()).number();
+    }
+    const JsonPlace expression = place.member("implicit");
+    const std::string text = expression.text();
+    return at(expression, [&] { return workshop_.placed(shape_from_expression(text, parameters, bounds), placement); });
+  }
+
+  Shape read_glsl(const JsonPlace& place, const Affine*, std::size_t) const {
+    throw NotAvailable(place.member("glsl").prefix() + "GLSL in scenes is not available in this version");
+  }
+  Shape read_dexel_file(const JsonPlace& place, const Affine*, std::size_t) const {
+    throw NotAvailable(place.member("dexels").prefix() + "dexels in scenes are not available in this version");
+  }
+
+  const Source& source_;
+  Workshop& workshop_;
+  const SceneLimits& limits_;
+};
+
+const std::vector<JsonReader::Kind>& JsonReader::kinds() {
+  static const std::vector<Kind> all{
+      {"union", {}, &JsonReader::read_union},
+      {"intersection", {}, &JsonReader::read_intersection},
+      {"difference", {}, &JsonReader::read_difference},
+      {"offset", {"of"}, &JsonReader::read_offset},
+      {"closing", {"of"}, &JsonReader::read_closing},
+      {"opening", {"of"}, &JsonReader::read_opening},
+      {"transform", {"of"}, &JsonReader::read_moved},
+      {"mesh", {}, &JsonReader::read_mesh_node},
+      {"implicit", {"bounds", "parameters"}, &JsonReader::read_implicit},
+      {"gallery", {}, &JsonReader::read_gallery},
+      {"points", {}, &JsonReader::read_points_node},
+      {"glsl", {"entry"}, &JsonReader::read_glsl},
+      {"dexels", {}, &JsonReader::read_dexel_file},
+  };
+  return all;
+}
+
+}  // namespace
+
+Shape read_json_scene(const Source& source, Workshop& workshop, const SceneLimits& limits) {
+  return JsonReader(source, workshop, limits).read();
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,37 @@
+#pragma once
+/// Flat shapes: closed polygons with holes, and the triangles that fill them.
+
+#include <cstddef>
+#include <vector>
+
+#include "evenmesh/mesh.h"
+#include "geometry/predicates.h"
+
+namespace evenmesh {
+
+using Contour = std::vector<Point2>;
+
+/// Closed contours with the shape to their left: outer ones run counter-clockwise, holes clockwise.
+struct Outline {
+  std::vector<Contour> contours;
+
+  std::size_t points() const;
+};
+
+/// Twice the signed area, positive when counter-clockwise.
+double twice_area(const Contour& contour);
+
+/// The region inside of an odd number of paths, none of which crosses itself or another one.
+///
+/// Repeated points and paths without area are left out. Where paths do cross, every lobe counts as inside.
+/// Cost: paths × points. @throws UnusableInput  more than 10⁹ of that
+Outline outline_of_paths(std::vector<Contour> paths);
+
+/// Triangles that fill the outline; corners are counted through all contours, in their order.
+///
+/// Their border is that of the contours, edge for edge, and they add up to its winding number: counter-clockwise
+/// triangles without overlap where no contour crosses one, signed ones that cancel where one does, or where it has very
+/// many points. Cost: O(points²) at worst, near-linear for few notches and holes.
+std::vector<Triangle> fill(const Outline& outline);
+
+}  // namespace evenmesh

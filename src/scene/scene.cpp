@@ -1,0 +1,76 @@
+/// Scene files: recognition, limits, and the choice between the two readers.
+
+#include "evenmesh/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <system_error>
+
+#include "evenmesh/error.h"
+#include "evenmesh/io.h"
+#include "io/bytes.h"
+#include "io/text.h"
+#include "scene/workshop.h"
+
+namespace evenmesh {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool has_extension(std::string_view name, std::string_view extension) {
+  return name.size() > extension.size() && equals_ignoring_case(name.substr(name.size() - extension.size()), extension);
+}
+
+[[noreturn]] void refuse_size(std::string_view name, std::uint64_t bytes, std::size_t limit) {
+  throw UnusableInput(
+      fmt::format("{}: has {} bytes, but a scene may have {} at most; move its meshes into files of "
+                  "their own",
+                  name, bytes, limit));
+}
+
+std::string_view without_byte_order_mark(std::string_view bytes) {
+  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+  return bytes;
+}
+
+}  // namespace
+
+bool is_scene(std::string_view name, std::string_view first_bytes) {
+  if (format_of_content(first_bytes)) return false;
+  if (has_extension(name, ".csg") || has_extension(name, ".json")) return true;
+  std::string_view bytes = without_byte_order_mark(first_bytes);
+  bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
+  return bytes.starts_with('{') && format_of_name(name) != MeshFormat::glb;
+}
+
+Shape parse_scene(std::string_view bytes, std::string_view name, const fs::path& folder, Run& run,
+                  const SceneLimits& limits) {
+  if (bytes.size() > limits.bytes) refuse_size(name, bytes.size(), limits.bytes);
+  const Source source{without_byte_order_mark(bytes), name, &run};
+  if (source.bytes.empty()) fail(source, "is empty; export it again");
+  try {
+    Workshop workshop(folder, limits, run);
+    return has_extension(name, ".csg") ? read_csg_scene(source, workshop, limits)
+                                       : read_json_scene(source, workshop, limits);
+  } catch (const std::bad_alloc&) {
+    fail(source, "does not fit into the memory; reduce it or use a larger machine");
+  }
+}
+
+Shape read_scene(const fs::path& path, Run& run) {
+  run.throw_if_cancelled();
+  const std::string name = name_of_input(path);
+  const SceneLimits limits;
+  std::error_code unknown;  // of pipes; they are measured when they are read
+  if (path != "-" && fs::is_regular_file(path, unknown)) {
+    const std::uintmax_t bytes = fs::file_size(path, unknown);
+    if (!unknown && bytes > limits.bytes) refuse_size(name, bytes, limits.bytes);
+  }
+  const FileBytes bytes = load_file(path);
+  return parse_scene(bytes.view(), name, path == "-" ? fs::path() : path.parent_path(), run, limits);
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,72 @@
+#include "scene/workshop.h"
+
+#include <system_error>
+#include <utility>
+
+#include "evenmesh/error.h"
+#include "evenmesh/io.h"
+
+namespace evenmesh {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// In quotes, without what would confuse a terminal.
+std::string shown(const fs::path& path) {
+  std::string text = path.string();
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
+  constexpr std::size_t longest = 200;  // the end tells more
+  if (text.size() > longest) text = "…" + text.substr(text.size() - longest);
+  return "'" + text + "'";
+}
+
+}  // namespace
+
+fs::path Workshop::file(const std::string& name) const {
+  if (name.empty() || name.find('\0') != std::string::npos) throw UnusableInput("needs the name of a file");
+  const fs::path path = (folder_ / name).lexically_normal();
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) {
+    throw UnusableInput("there is no file " + shown(path) + "; paths are relative to the folder of the scene");
+  }
+  // Pipes and devices could keep a reader waiting for ever.
+  if (!fs::is_regular_file(status)) throw UnusableInput(shown(path) + " is not a regular file");
+  return path;
+}
+
+Shape Workshop::mesh_file(const std::string& name) {
+  const fs::path path = file(name);
+  auto found = meshes_.find(path);
+  if (found == meshes_.end()) {
+    found = meshes_.emplace(path, shape_from_mesh(read_mesh(path, run_), path.filename().string())).first;
+  }
+  return found->second;
+}
+
+Shape Workshop::point_file(const std::string& name) {
+  const fs::path path = file(name);
+  auto found = points_.find(path);
+  if (found == points_.end()) {
+    found = points_.emplace(path, shape_from_points(read_points(path, run_), path.filename().string())).first;
+  }
+  return found->second;
+}
+
+Shape Workshop::placed(const Shape& shape, const Affine* placement) {
+  if (placement == nullptr) return shape;
+  if (const Mesh* mesh = shape.mesh()) spend(mesh->triangles.size());
+  if (const PointCloud* cloud = shape.points()) spend(cloud->points.size());
+  return transformed(shape, *placement);
+}
+
+void Workshop::spend(std::uint64_t count) {
+  if (count > left_) {
+    throw UnusableInput("asks for more triangles than a scene may have (100,000,000); split it, or use fewer copies");
+  }
+  left_ -= count;
+}
+
+}  // namespace evenmesh
