@@ -275,8 +275,11 @@ class Job {
       notice(false, fmt::format("{} pieces of surface smaller than a cell were left out", report_.dropped_components));
     if (const std::size_t balls = cells_.balls.balls().size(); balls > 0)
       notice(false,
-             fmt::format("the surface comes closer to itself than the grid can tell, or ends in detail that it cannot: "
-                         "{} balls of half an edge or more were united with the solid there",
+             fmt::format("{}: {} balls of half an edge or more were united with the solid there",
+                         options_.topology == TopologyRule::simplify
+                             ? "the topology was made simpler where it needs more vertices"
+                             : "the surface comes closer to itself than the grid can tell, or ends in detail that it "
+                               "cannot",
                          balls));
     if (by_shell_ && !options_.wrap) {
       if (options_.connect == Connect::fragments && !two_manifold)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -17,6 +18,7 @@ namespace evenmesh {
 namespace {
 
 constexpr int topology_rounds = 12;
+constexpr int patience = 3;  ///< fragments: rounds without a fifth fewer defects
 constexpr std::size_t settling_evaluations = 5;
 constexpr double shell_effort =
     1.7;  ///< of balancing, a small part of the time here: Q 0.005 higher for 10 % more of it
@@ -42,9 +44,14 @@ class ShellCells {
       report_.energy_ratio = result.energy_ratio;
     });
     connect();
-    for (int round = 0; round < topology_rounds; ++round) {
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    for (int round = 0, idle = 0; round < topology_rounds; ++round) {
       const auto found = defects();
       if (found.empty()) break;
+      // Sheets closer than the samples can tell stay together, however many seeds there are.
+      idle = 10 * found.size() < 8 * fewest ? 0 : idle + 1;
+      fewest = std::min(fewest, found.size());
+      if (options_.connect == Connect::fragments && idle > patience) break;
       mend(found);
     }
     if (options_.topology == TopologyRule::simplify)

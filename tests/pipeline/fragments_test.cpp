@@ -54,27 +54,38 @@ TEST(Fragments, CyclesAreShorterThanNine) {
 }
 
 TEST(Fragments, WhatDoesNotFitTogetherIsSaid) {
-  // Too coarse a grid, and no more seeds than cells of it.
-  const MeshResult result =
-      meshed(gallery_shape("menger-3"),
-             {.vertices = 500, .resolution = 40, .quality = Quality::fast, .connect = Connect::fragments});
+  // Too coarse a grid for the sponge's tunnels.
+  const MeshOptions options{.vertices = 120, .resolution = 30, .quality = Quality::fast, .connect = Connect::fragments};
+  const MeshResult result = meshed(gallery_shape("menger-2"), options);
   const MeshQuality q = measure_quality(result.mesh);
   bool told = false;
   for (const Notice& notice : result.report.notices) told |= notice.promise_broken;
   EXPECT_EQ(q.closed() && q.two_manifold() && q.oriented() && result.report.self_intersections == 0, !told);
 }
 
+TEST(Fragments, SheetsHaveNoInsideToSimplify) {
+  MeshOptions options = by_shell(200);
+  options.connect = Connect::fragments;
+  options.topology = TopologyRule::simplify;
+  const MeshResult result = meshed(shape_from_mesh(hemisphere(4)), options);
+  expect_good_sheet(result);
+  EXPECT_TRUE(has_notice(result.report, "sheets have no inside"));
+}
+
 class Simplify : public testing::TestWithParam<Connect> {};
 
 TEST_P(Simplify, KeepsTheNumberOfVertices) {
   const MeshOptions options{
-      .vertices = 600, .quality = Quality::fast, .connect = GetParam(), .topology = TopologyRule::simplify};
-  const MeshResult one = meshed(gallery_shape("octic"), options, 1), two = meshed(gallery_shape("octic"), options, 2);
+      .vertices = 400, .quality = Quality::fast, .connect = GetParam(), .topology = TopologyRule::simplify};
+  const Shape sponge = gallery_shape("menger-2");
+  const MeshResult one = meshed(sponge, options, 1), two = meshed(sponge, options, 7);
   EXPECT_TRUE(same_mesh(one.mesh, two.mesh));
   const MeshQuality q = measure_quality(one.mesh);
   EXPECT_TRUE(q.closed() && q.two_manifold() && q.oriented());
-  EXPECT_LE(one.mesh.vertices.size(), 603u);
+  EXPECT_LE(one.mesh.vertices.size(), 402u);
   EXPECT_EQ(one.report.inserted_seeds, 0u);
+  EXPECT_GT(one.report.regularization_rounds, 0u);
+  EXPECT_TRUE(has_notice(one.report, "the topology was made simpler"));
 }
 
 TEST_P(Simplify, LeavesAloneWhatFitsTogether) {
