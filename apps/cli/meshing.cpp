@@ -27,10 +27,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// Options that are documented but not built yet: never silently ignored.
 void refuse_planned_options(const MeshingArguments& a) {
   if (!a.error.empty()) not_available("--error");
-  if (!a.max_cycle.empty()) not_available("--max-cycle");
   if (!a.dump_dexels.empty()) not_available("--dump-dexels");
   if (!a.entry.empty()) not_available("--entry");
-  choice("--topology", a.topology, {"keep"}, {"simplify"});
   choice("--backend", a.backend, {"cpu"}, {"gl"});
   if (a.features != "off") {
     if (a.features != "auto") real_number("--features", a.features, 0, 180);
@@ -59,7 +57,13 @@ MeshOptions mesh_options(const MeshingArguments& a) {
   options.quality = static_cast<Quality>(choice("--quality", a.quality, {"fast", "normal", "high"}));
   options.optimizer = static_cast<Optimizer>(choice("--optimizer", a.optimizer, {"lbfgs", "lloyd"}));
   options.start = static_cast<Start>(choice("--start", a.start, {"random", "blue-noise", "coarse-to-fine"}));
-  options.connect = static_cast<Connect>(choice("--connect", a.connect, {"complex", "flood"}, {"fragments"}));
+  options.connect = static_cast<Connect>(choice("--connect", a.connect, {"complex", "flood", "fragments"}));
+  if (!a.max_cycle.empty()) {
+    options.max_cycle = whole_number("--max-cycle", a.max_cycle, 3, 8);
+    if (options.connect != Connect::fragments)
+      throw InvalidInput("--max-cycle is for --connect fragments; give both or neither");
+  }
+  options.topology = static_cast<TopologyRule>(choice("--topology", a.topology, {"keep", "simplify"}));
   options.placement =
       static_cast<Placement>(choice("--placement", a.placement, {"centroid", "constrained", "quadric"}));
   if (!a.iterations.empty()) options.iterations = whole_number("--iterations", a.iterations, 0, 10'000);
@@ -106,6 +110,7 @@ Json options_json(const MeshingArguments& a, const Operation& operation, unsigne
   given("seed", a.seed);
   given("placement", a.placement);
   given("connect", a.connect);
+  given("max_cycle", a.max_cycle);
   given("topology", a.topology);
   given("features", a.features);
   given("density", a.density);

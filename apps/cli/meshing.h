@@ -24,7 +24,8 @@ struct MeshingArguments {
   std::string backend = "cpu", threads = "0", progress = "auto";
   std::string report, json;
   std::string thickness, outliers, dump_shell;
-  std::string error, max_cycle, dump_dexels, entry;  ///< documented, not available yet
+  std::string max_cycle;
+  std::string error, dump_dexels, entry;  ///< documented, not available yet
   bool quiet = false, verbose = false;
   bool wrap = false;
 };

@@ -22,8 +22,9 @@ void add_what(CLI::App& app, MeshingArguments& a) {
   option(
       "--bounds", a.bounds, "BOX",
       "x0,y0,z0,x1,y1,z1 in model units: where the surface is sought;\na surface cut by it is capped; default: found");
-  option("--topology", a.topology, "keep",
-         "keep: add vertices where the topology needs them (simplify: not available)");
+  option("--topology", a.topology, "RULE",
+         "keep: add vertices where the topology needs them; simplify: keep the number of\nvertices and fill small "
+         "tunnels and gaps of the solid instead; default keep");
   option("--features", a.features, "off", "sharp edges: off (auto, ANGLE: not available)");
   option("--density", a.density, "uniform",
          "vertices per area: uniform, or EXPR in x, y, z, compared with elsewhere\n(curvature, FILE: not available)");
@@ -46,9 +47,10 @@ void add_effort(CLI::App& app, MeshingArguments& a) {
   option("--start", a.start, "NAME", "random|blue-noise|coarse-to-fine; default coarse-to-fine");
   option("--seed", a.seed, "S", "of the random numbers, 0 to 18446744073709551615; default 1");
   option("--placement", a.placement, "NAME", "of the vertices: centroid|constrained|quadric; default quadric");
-  option("--connect", a.connect, "NAME",
-         "cells to triangles: complex (by the nearest vertex), flood (by the first\nalong the surface); fragments: not "
-         "available; default complex");
+  option(
+      "--connect", a.connect, "NAME",
+      "cells to triangles: complex (by the nearest vertex), flood (by the first\nalong the surface), fragments (from "
+      "unordered samples); default complex");
   option("--thickness", a.thickness, "D",
          "half width of the shell in voxels, 1 to 20: gaps narrower than twice\nthat are bridged; default 2, for "
          "points by their spacing");
@@ -56,7 +58,8 @@ void add_effort(CLI::App& app, MeshingArguments& a) {
          "leave out points whose mean distance to their neighbours is more than S\nstandard deviations above the mean, "
          "0 to "
          "100, e.g. 3; default: none");
-  option("--max-cycle", a.max_cycle, "N", "longest cycle of --connect fragments; not available in this version");
+  option("--max-cycle", a.max_cycle, "N",
+         "--connect fragments: the longest gap in edges that triangles fill, 3 to 8; default 5");
 }
 
 void add_how(CLI::App& app, MeshingArguments& a) {

@@ -23,8 +23,11 @@ enum class Quality { fast, normal, high };
 enum class Optimizer { lbfgs, lloyd };
 enum class Start { random, blue_noise, coarse_to_fine };
 /// How cells are told apart before they become triangles: by the nearest seed, disconnected pieces becoming cells of
-/// their own; or by the seed that reaches them along the surface.
-enum class Connect { complex, flood };
+/// their own; or by the seed that reaches them along the surface. Fragments: not at all, triangles come from seeds that
+/// are about equally near to a sample.
+enum class Connect { complex, flood, fragments };
+/// What gives way where the vertices asked for are too few for the topology: their number, or the topology of a solid.
+enum class TopologyRule { keep, simplify };
 enum class Placement { centroid, constrained, quadric };
 
 /// What the mesh shall be like. Nothing in here depends on the machine.
@@ -45,6 +48,8 @@ struct MeshOptions {
   Optimizer optimizer = Optimizer::lbfgs;
   Start start = Start::coarse_to_fine;
   Connect connect = Connect::complex;
+  std::size_t max_cycle = 5;  ///< of Connect::fragments: the longest gap that triangles fill, in edges, [3, 8]
+  TopologyRule topology = TopologyRule::keep;
   Placement placement = Placement::quadric;
   std::optional<std::size_t>
       iterations{};             ///< evaluations of the energy per level at most, [0, 10000]; default by quality
@@ -85,6 +90,7 @@ struct Report {
   unsigned thickness_apart = 0;  ///< shell: the largest thickness that fills none of them; 0: the voxels are too large
   std::size_t inserted_seeds = 0;  ///< added because the topology needed them
   std::size_t regularization_rounds = 0;
+  std::vector<double> cycle_shares;  ///< Connect::fragments: edges from cycles of 3, 4, … of all, in [0, 1]
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time per stage, in order
   std::size_t peak_memory_bytes = 0;                    ///< of the process, so far
   std::vector<Notice> notices;

@@ -31,6 +31,8 @@ struct LabelComplex {
   /// Where seeds are needed, sorted: pairs of labels whose cells meet along several arcs; (l, l) for a cell that is not
   /// a disk or meets itself around a corner.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> defects;
+  std::vector<std::size_t>
+      edges_by_cycle{};  ///< of connect_fragments: edges from cycles of 3, 4, …; the shortest counts
 };
 
 /// Connects the cells of `labels` (one per sample, below `seeds.size()` or no_label; changed where cells are split).

@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "connect/flood.h"
+#include "connect/fragments.h"
 #include "connect/pinches.h"
 #include "connect/surface_parts.h"
 #include "cvt/starts.h"
 #include "pipeline/fineness.h"
 #include "pipeline/mend.h"
+#include "pipeline/regularize.h"
 
 namespace evenmesh {
 
@@ -28,15 +31,27 @@ BalanceOptions balance_options(const MeshOptions& options) {
   return balance;
 }
 
+void report_cycles(const LabelComplex& complex, Report& report, Run& run) {
+  const auto& edges = complex.edges_by_cycle;
+  const auto all = static_cast<double>(std::accumulate(edges.begin(), edges.end(), std::size_t{0}));
+  report.cycle_shares.clear();
+  for (std::size_t c = 0; c < edges.size(); ++c) {
+    const double share = all > 0 ? static_cast<double>(edges[c]) / all : 0;
+    report.cycle_shares.push_back(share);
+    run.log(fmt::format("edges from cycles of {}: {}, {:.2f} %", c + 3, edges[c], 100 * share));
+  }
+}
+
 namespace {
 
-constexpr int count_rounds = 3;      ///< attempts to meet the vertex count
-constexpr int seed_rounds = 12;      ///< attempts to make every cell a disk with more seeds
-constexpr int patience = 3;          ///< rounds without a fifth fewer defects until seeds are given up
-constexpr int ball_rounds = 32;      ///< those, and attempts to change the topology where it resists
-constexpr int topology_rounds = 50;  ///< attempts altogether; the last ones divide cells down to single samples
-constexpr int trim_rounds = 6;       ///< attempts to meet the vertex count in the end
-constexpr int trim_seed_rounds = 3;  ///< after each of them
+constexpr int count_rounds = 3;          ///< attempts to meet the vertex count
+constexpr int seed_rounds = 12;          ///< attempts to make every cell a disk with more seeds
+constexpr int patience = 3;              ///< rounds without a fifth fewer defects until seeds are given up
+constexpr int ball_rounds = 32;          ///< those, and attempts to change the topology where it resists
+constexpr int topology_rounds = 50;      ///< attempts altogether; the last ones divide cells down to single samples
+constexpr int simplifying_rounds = 100;  ///< a ball grows up in ten of them
+constexpr int trim_rounds = 6;           ///< attempts to meet the vertex count in the end
+constexpr int trim_seed_rounds = 3;      ///< after each of them
 constexpr std::size_t settling_evaluations = 5;
 
 class Cells {
@@ -55,9 +70,13 @@ class Cells {
     connect();
     clear_dust();
     meet_count();
-    mend();
+    if (options_.topology == TopologyRule::simplify)
+      simplify();
+    else
+      mend();
     trim_count();
     const bool two_manifold = !needs_seeds();
+    report_cycles(complex_, report_, run_);
     return {.seeds = std::move(seeds_),
             .labels = std::move(labels_),
             .triangles = std::move(complex_.triangles),
@@ -89,6 +108,10 @@ class Cells {
   void connect() {
     stages_.stage("connect", 0.1, [&] {
       evaluator_->nearest(seeds_, labels_);
+      if (options_.connect == Connect::fragments) {
+        complex_ = connect_fragments(samples_, seeds_, {.max_cycle = options_.max_cycle}, run_).complex;
+        return;
+      }
       if (options_.connect == Connect::flood) flood_labels(samples_, labels_, seeds_, run_);
       complex_ = connect_labels(samples_, labels_, seeds_, run_);
       for (const CellPiece& piece : complex_.pieces) seeds_.push_back(piece.centroid);
@@ -225,6 +248,28 @@ class Cells {
         dust_cleared = true;
         if (clear_dust()) pinches_known = false;
       }
+    }
+  }
+
+  /// The paper's loop: the topology gives way, not the number of vertices. [Raster2Mesh §4.4]
+  void simplify() {
+    RegularizationBalls list(samples_.grid.spacing, edge());
+    for (int round = 0; round < simplifying_rounds && needs_seeds(); ++round) {
+      std::vector<BadEdge> edges;
+      for (const auto& [a, b] : defects()) edges.push_back({seeds_[a], seeds_[b]});
+      const std::vector<std::uint32_t> changed = list.next_round(edges);
+      run_.log(fmt::format("simplify {}: {} places, {} seeds, {} balls, {} new or grown", round, edges.size(),
+                           seeds_.size(), list.balls().size(), changed.size()));
+      const std::size_t pieces = complex_.pieces.size();
+      forget_pieces();
+      // Pieces of cells count as vertices too.
+      if (const std::size_t room = std::max<std::size_t>(4, count_ - std::min(pieces, count_)); seeds_.size() > room)
+        stages_.stage("balance", 0, [&] { adjust_count(*evaluator_, seeds_, room, options_.seed + 7, run_); });
+      balls_ = BallIndex(list.balls());
+      regularize(changed);
+      settle();
+      connect();
+      if (!unconnected().empty()) clear_dust();
     }
   }
 

@@ -21,6 +21,9 @@ struct ConnectedCells {
 /// What the options mean for balancing seeds.
 BalanceOptions balance_options(const MeshOptions& options);
 
+/// Of connect_fragments: the shares of edges by the cycle that they come from, for the report and the log.
+void report_cycles(const LabelComplex& complex, Report& report, Run& run);
+
 /// Balances about `count` seeds on `samples` (dust is removed from them) and connects their cells; the report gets
 /// counts, energies and notices. The vertex count is met by starting with fewer seeds where thin walls split cells.
 ConnectedCells balance_and_connect(SampleSet& samples, std::size_t count, const MeshOptions& options, Stages& stages,

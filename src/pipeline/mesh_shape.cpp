@@ -36,6 +36,7 @@ void check(const MeshOptions& o) {
     throw InvalidInput("the resolution must lie in [8, 8192]");
   if (o.thickness && (*o.thickness < 1 || *o.thickness > 20))
     throw InvalidInput("the shell's thickness must lie in [1, 20] voxels");
+  if (o.max_cycle < 3 || o.max_cycle > 8) throw InvalidInput("the longest cycle must lie in [3, 8] edges");
   if (o.iterations && *o.iterations > 10'000) throw InvalidInput("the iterations must lie in [0, 10000]");
   if (!(o.tolerance > 0 && o.tolerance < 1)) throw InvalidInput("the tolerance must lie in (0, 1)");
   if (o.bounds && !(is_finite(o.bounds->lo) && is_finite(o.bounds->hi)) && !o.bounds->empty())
@@ -260,10 +261,11 @@ class Job {
     return mesh;
   }
 
-  /// Open surfaces: vertices in which several fans of triangles meet are split, and the rim is marked.
+  /// Open surfaces and fragments: vertices in which several fans of triangles meet are split, and the rim is marked.
   void separate(Mesh& mesh) {
     at_rim_.assign(mesh.vertices.size(), 0);
-    if (!by_shell_ || options_.wrap) return;
+    const bool closed = !by_shell_ || options_.wrap;
+    if (closed && options_.connect != Connect::fragments) return;
     std::vector<std::uint32_t> source;
     report_.cuts += separate_fans(mesh, source);
     const HalfEdges edges(mesh.triangles, mesh.vertices.size());
@@ -303,10 +305,16 @@ class Job {
       notice(false, fmt::format("{} pieces of surface smaller than a cell were left out", report_.dropped_components));
     if (const std::size_t balls = cells_.balls.balls().size(); balls > 0)
       notice(false,
-             fmt::format("the surface comes closer to itself than the grid can tell, or ends in detail that it cannot: "
-                         "{} balls of half an edge or more were united with the solid there",
+             fmt::format("{}: {} balls of half an edge or more were united with the solid there",
+                         options_.topology == TopologyRule::simplify
+                             ? "the topology was made simpler where it needs more vertices"
+                             : "the surface comes closer to itself than the grid can tell, or ends in detail that it "
+                               "cannot",
                          balls));
     if (by_shell_ && !options_.wrap) {
+      if (options_.connect == Connect::fragments && !two_manifold)
+        notice(true,
+               "the cells do not fit together everywhere: the mesh has cuts or holes there; ask for more vertices");
       if (!q.two_manifold() || !q.oriented())
         notice(true, fmt::format("the mesh is not a two-manifold: {} non-manifold edges; ask for more vertices",
                                  q.non_manifold_edges));

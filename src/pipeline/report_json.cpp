@@ -30,6 +30,7 @@ std::string report_json(const Report& r) {
   json["cuts"] = r.cuts;
   json["inserted_seeds"] = r.inserted_seeds;
   json["regularization_rounds"] = r.regularization_rounds;
+  json["cycle_shares"] = r.cycle_shares;
   json["seconds"] = nlohmann::ordered_json::object();
   for (const auto& [stage, seconds] : r.seconds) json["seconds"][stage] = seconds;
   json["peak_memory_bytes"] = r.peak_memory_bytes;

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
+#include "connect/dual_polygons.h"
 #include "connect/flood.h"
+#include "connect/fragments.h"
 #include "geometry/half_edges.h"
 #include "pipeline/fineness.h"
 #include "pipeline/mend.h"
@@ -15,6 +18,8 @@ namespace evenmesh {
 namespace {
 
 constexpr int topology_rounds = 12;
+constexpr int patience = 3;  ///< fragments: rounds without a fifth fewer defects
+constexpr std::size_t settling_evaluations = 5;
 constexpr double shell_effort =
     1.7;  ///< of balancing, a small part of the time here: Q 0.005 higher for 10 % more of it
 
@@ -39,13 +44,21 @@ class ShellCells {
       report_.energy_ratio = result.energy_ratio;
     });
     connect();
-    for (int round = 0; round < topology_rounds; ++round) {
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    for (int round = 0, idle = 0; round < topology_rounds; ++round) {
       const auto found = defects();
       if (found.empty()) break;
+      // Sheets closer than the samples can tell stay together, however many seeds there are.
+      idle = 10 * found.size() < 8 * fewest ? 0 : idle + 1;
+      fewest = std::min(fewest, found.size());
+      if (options_.connect == Connect::fragments && idle > patience) break;
       mend(found);
     }
+    if (options_.topology == TopologyRule::simplify)
+      report_.notices.push_back({false, "sheets have no inside that balls could be added to: their topology was kept"});
     ConnectedCells cells;
     cells.two_manifold = complex_.defects.empty();
+    report_cycles(complex_, report_, run_);
     cells.anchors = anchors();
     cells.seeds = std::move(seeds_), cells.labels = std::move(labels_);
     cells.triangles = std::move(complex_.triangles);
@@ -56,6 +69,10 @@ class ShellCells {
   void connect() {
     stages_.stage("connect", 0.1, [&] {
       evaluator_.nearest(seeds_, labels_);
+      if (options_.connect == Connect::fragments) {
+        connect_as_fragments();
+        return;
+      }
       std::vector<std::uint32_t> all(sampling_.surface.samples.size(), no_label);
       for (std::size_t i = 0; i < labels_.size(); ++i) all[sampling_.in_surface[i]] = labels_[i];
       if (options_.connect == Connect::flood) flood_labels(sampling_.surface.samples, all, seeds_, run_);
@@ -63,6 +80,16 @@ class ShellCells {
       for (std::size_t i = 0; i < labels_.size(); ++i) labels_[i] = all[sampling_.in_surface[i]];
       for (const CellPiece& piece : complex_.pieces) seeds_.push_back(piece.centroid);
     });
+  }
+
+  /// A boundary away from the rim of the sheets is a hole: a cycle that could not be filled.
+  void connect_as_fragments() {
+    complex_ = connect_fragments(samples_, seeds_, {.max_cycle = options_.max_cycle, .open = true}, run_).complex;
+    std::vector<char> at_rim(seeds_.size(), 0);
+    for (std::size_t i = 0; i < labels_.size(); ++i)
+      if (sampling_.sheets.border[sampling_.in_surface[i]]) at_rim[labels_[i]] = 1;
+    for (const auto& [a, b] : manifold_defects(complex_.triangles, seeds_.size()))
+      if (a != b && (!at_rim[a] || !at_rim[b])) complex_.defects.push_back({a, b});
   }
 
   /// Defects of the complex, and cells that own a good deal of surface but no triangle: small sheets need three seeds.
@@ -90,6 +117,12 @@ class ShellCells {
     seeds_.resize(given);
     seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
     report_.inserted_seeds += mending.seeds.size();
+    // Seeds closer than a few samples would all be neighbours to fragments.
+    if (options_.connect == Connect::fragments)
+      stages_.stage("balance", 0, [&] {
+        optimize(evaluator_, seeds_, {options_.optimizer == Optimizer::lloyd, settling_evaluations, options_.tolerance},
+                 run_);
+      });
     connect();
   }
 

@@ -100,6 +100,10 @@ TEST_F(Usage, WrongUsageIsStatus2) {
       {{"mesh", in, "-o", "x.ply", "--outliers", "3"}, "--outliers is for points"},
       {{"mesh", in, "-o", "x.ply", "--dump-shell", "x.vdb"}, "add --method shell"},
       {{"mesh", in, "-o", "x.ply", "--start", "cold"}, "--start"},
+      {{"mesh", in, "-o", "x.ply", "--connect", "glue"}, "complex, flood, fragments"},
+      {{"mesh", in, "-o", "x.ply", "--connect", "fragments", "--max-cycle", "9"}, "between 3 and 8"},
+      {{"mesh", in, "-o", "x.ply", "--max-cycle", "5"}, "--connect fragments"},
+      {{"mesh", in, "-o", "x.ply", "--topology", "any"}, "keep, simplify"},
       {{"mesh", in, "-o", "x.ply", "--seed", "-1"}, "--seed"},
       {{"mesh", in, "-o", "x.ply", "--bounds", "0,0,0,1,1"}, "6 numbers"},
       {{"mesh", in, "-o", "x.ply", "--bounds", "0,0,0,1,0,1"}, "y0 below y1"},
@@ -154,9 +158,8 @@ TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
     expect_one_sentence(outcome, "not available in this version");
   }
   const std::vector<Words> options{
-      {"--connect", "fragments"}, {"--topology", "simplify"}, {"--features", "auto"}, {"--features", "40"},
-      {"--density", "curvature"}, {"--backend", "gl"},        {"--error", "0.001"},   {"--max-cycle", "5"},
-      {"--dump-dexels", "a.tdx"}, {"--entry", "map"},
+      {"--features", "auto"}, {"--features", "40"},       {"--density", "curvature"}, {"--backend", "gl"},
+      {"--error", "0.001"},   {"--dump-dexels", "a.tdx"}, {"--entry", "map"},
   };
   for (const Words& option : options) {
     SCOPED_TRACE(testing::PrintToString(option));

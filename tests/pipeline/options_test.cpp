@@ -71,6 +71,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Choice{"random", {.start = Start::random}}, Choice{"blue_noise", {.start = Start::blue_noise}},
                     Choice{"centroid", {.placement = Placement::centroid}},
                     Choice{"constrained", {.placement = Placement::constrained}},
+                    Choice{"fragments", {.connect = Connect::fragments}},
+                    Choice{"simplify", {.topology = TopologyRule::simplify}},
                     Choice{"few_iterations", {.iterations = 3}}, Choice{"other_seed", {.seed = 77}}),
     [](const auto& of) { return std::string(of.param.name); });
 
