@@ -28,7 +28,6 @@ constexpr std::array planned_kinds{
     PlannedKind{".nii", "reading a NIfTI volume"},
     PlannedKind{".nii.gz", "reading a NIfTI volume"},
     PlannedKind{".nrrd", "reading an NRRD volume"},
-    PlannedKind{".tdx", "reading dexels"},
 };
 
 bool ends_with_ignoring_case(std::string_view text, std::string_view ending) {
@@ -78,6 +77,7 @@ void check_file(const std::string& command, const std::string& name) {
 Shape read_one(const std::string& name, Run& run) {
   if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
   if (names_a_scene(name)) return read_scene(name, run);
+  if (is_dexel_file(head_of(name))) return shape_from_dexels(read_dexels(name, run), name);
   refuse_planned_kinds(name);
   const std::string title = name == "-" ? "standard input" : name;
   std::variant<Mesh, PointCloud> contents = read_mesh_or_points(name, run);

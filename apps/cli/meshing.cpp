@@ -27,7 +27,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// Options that are documented but not built yet: never silently ignored.
 void refuse_planned_options(const MeshingArguments& a) {
   if (!a.error.empty()) not_available("--error");
-  if (!a.dump_dexels.empty()) not_available("--dump-dexels");
   if (!a.entry.empty()) not_available("--entry");
   choice("--backend", a.backend, {"cpu"}, {"gl"});
   if (a.features != "off") {
@@ -150,9 +149,11 @@ Plan check(MeshingArguments& a, const Operation& operation) {
   if (!a.report.empty()) check_output("--report", a.report);
   if (!a.json.empty()) check_output("--json", a.json);
   if (!a.dump_shell.empty()) check_output("--dump-shell", a.dump_shell);
+  if (!a.dump_dexels.empty()) check_output("--dump-dexels", a.dump_dexels);
+  plan.options.keep_dexels = !a.dump_dexels.empty();
   plan.options.keep_shell = !a.dump_shell.empty(), plan.options.keep_shell_cut = !a.report.empty();
-  if ((a.output == "-") + (a.json == "-") + (a.report == "-") + (a.dump_shell == "-") > 1) {
-    throw InvalidInput("only one of -o, --json, --report and --dump-shell can go to standard output");
+  if ((a.output == "-") + (a.json == "-") + (a.report == "-") + (a.dump_shell == "-") + (a.dump_dexels == "-") > 1) {
+    throw InvalidInput("only one of -o, --json, --report, --dump-shell and --dump-dexels can go to standard output");
   }
   return plan;
 }
@@ -202,6 +203,8 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
     seconds.insert(seconds.begin(), {"read", reading});
     if (!a.dump_shell.empty() && result.shell.voxels.empty())
       throw InvalidInput("--dump-shell: rays have no shell; add --method shell");
+    if (!a.dump_dexels.empty() && result.dexels.crossings.empty())
+      throw InvalidInput("--dump-dexels: sheets have no inside; add --method raster");
     if (!a.report.empty()) html = report_html(result, shape.name, run);
   }
   {
@@ -211,11 +214,13 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
     result.report.seconds.emplace_back("write", seconds_since(writing));
     if (!a.report.empty()) write_output(a.report, html);
     if (!a.dump_shell.empty()) write_output(a.dump_shell, serialize_vdb(result.shell));
+    if (!a.dump_dexels.empty()) write_output(a.dump_dexels, serialize_dexels(result.dexels));
     if (!a.json.empty()) write_output(a.json, run_json(result.report, a, operation, plan.threads));
   }
   const bool kept = tell_notices(result.report, plan.talk);
   if (plan.talk != Talk::quiet) {
-    const bool stdout_taken = a.output == "-" || a.json == "-" || a.report == "-" || a.dump_shell == "-";
+    const bool stdout_taken =
+        a.output == "-" || a.json == "-" || a.report == "-" || a.dump_shell == "-" || a.dump_dexels == "-";
     fmt::print(stdout_taken ? stderr : stdout, "{}", summary(result.report, a.output, seconds_since(start)));
   }
   return kept ? Status::done : Status::promise_broken;

@@ -71,7 +71,7 @@ void add_how(CLI::App& app, MeshingArguments& a) {
   option("--backend", a.backend, "NAME", "cpu (gl: not available); default cpu");
   option("--report", a.report, "FILE", "write pictures and figures of the run as one HTML page");
   option("--json", a.json, "FILE", "write the figures of the run as JSON, - for standard output");
-  option("--dump-dexels", a.dump_dexels, "FILE", "write the sampled solid (.tdx); not available in this version");
+  option("--dump-dexels", a.dump_dexels, "FILE", "write the sampled solid as dexels (.tdx), an input again");
   option("--dump-shell", a.dump_shell, "FILE",
          "write the shell (.vdb): distance of its voxels from the surface, model units");
   option("--progress", a.progress, "WHEN", "progress bar: auto|on|off; default auto = on a terminal");

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <variant>
 
+#include "evenmesh/dexels.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/points.h"
 #include "evenmesh/run.h"
@@ -66,6 +67,16 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path, std::option
 
 /// The bytes of a mesh file.
 std::string serialize_mesh(const Mesh& mesh, MeshFormat format);
+
+/// Reads a dexel file (.tdx), as serialize_dexels() writes it (docs/formats.md).
+/// @throws UnusableInput  one sentence that names the file and what is wrong with it
+Dexels read_dexels(const std::filesystem::path& path, Run& run = Run::silent());
+/// The same from memory; `name` is used in messages.
+Dexels parse_dexels(std::string_view bytes, std::string_view name);
+/// The bytes of a dexel file: 96 and 16 for each crossing.
+std::string serialize_dexels(const Dexels& dexels);
+/// Whether a file begins as a dexel file does.
+bool is_dexel_file(std::string_view bytes);
 
 /// The bytes of an OpenVDB file with one grid of floats; its active voxels are those of the volume. They differ from
 /// call to call, since OpenVDB gives every file an identifier of its own; what they say does not.

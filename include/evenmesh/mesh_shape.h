@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "evenmesh/dexels.h"
 #include "evenmesh/measure.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/run.h"
@@ -55,6 +56,7 @@ struct MeshOptions {
       iterations{};             ///< evaluations of the energy per level at most, [0, 10000]; default by quality
   double tolerance = 1e-4;      ///< stop when the mean seed moves less than this share of the seed spacing, (0, 1)
   std::uint64_t seed = 1;       ///< of the random numbers
+  bool keep_dexels = false;     ///< return the crossings that a solid was meshed from
   bool keep_shell = false;      ///< return the shell's voxels
   bool keep_shell_cut = false;  ///< return one layer of them, for pictures
 };
@@ -99,6 +101,7 @@ struct Report {
 struct MeshResult {
   Mesh mesh;
   Report report;
+  Dexels dexels;  ///< when asked for, of solids
   /// The voxels of the shell, when asked for and made; values: exact distance from the nearest voxel that the surface
   /// touches, centre to centre, model units.
   SparseVolume shell;

@@ -20,6 +20,7 @@
 #include "refine/projector.h"
 #include "refine/untangle.h"
 #include "sample/density.h"
+#include "sample/dexels.h"
 #include "sample/sample.h"
 #include "shape/bounds.h"
 
@@ -155,6 +156,7 @@ class Job {
       samples_ = sample_wrapping(shape_, options_, stages_, result_, run_);
     else
       sample();
+    if (options_.keep_dexels) result_.dexels = dexels_of(samples_);
     return balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
   }
 

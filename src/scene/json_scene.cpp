@@ -210,8 +210,10 @@ class JsonReader {
   Shape read_glsl(const JsonPlace& place, const Affine*, std::size_t) const {
     throw NotAvailable(place.member("glsl").prefix() + "GLSL in scenes is not available in this version");
   }
-  Shape read_dexel_file(const JsonPlace& place, const Affine*, std::size_t) const {
-    throw NotAvailable(place.member("dexels").prefix() + "dexels in scenes are not available in this version");
+  Shape read_dexel_node(const JsonPlace& place, const Affine* placement, std::size_t) const {
+    const JsonPlace given = place.member("dexels");
+    const std::string name = given.text();
+    return at(given, [&] { return workshop_.placed(workshop_.dexel_file(name), placement); });
   }
 
   const Source& source_;
@@ -233,7 +235,7 @@ const std::vector<JsonReader::Kind>& JsonReader::kinds() {
       {"gallery", {}, &JsonReader::read_gallery},
       {"points", {}, &JsonReader::read_points_node},
       {"glsl", {"entry"}, &JsonReader::read_glsl},
-      {"dexels", {}, &JsonReader::read_dexel_file},
+      {"dexels", {}, &JsonReader::read_dexel_node},
   };
   return all;
 }

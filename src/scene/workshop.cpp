@@ -55,6 +55,15 @@ Shape Workshop::point_file(const std::string& name) {
   return found->second;
 }
 
+Shape Workshop::dexel_file(const std::string& name) {
+  const fs::path path = file(name);
+  auto found = dexels_.find(path);
+  if (found == dexels_.end()) {
+    found = dexels_.emplace(path, shape_from_dexels(read_dexels(path, run_), path.filename().string())).first;
+  }
+  return found->second;
+}
+
 Shape Workshop::placed(const Shape& shape, const Affine* placement) {
   if (placement == nullptr) return shape;
   if (const Mesh* mesh = shape.mesh()) spend(mesh->triangles.size());

@@ -24,6 +24,7 @@ class Workshop {
   /// @param name  relative to the scene's folder, or absolute
   Shape mesh_file(const std::string& name);
   Shape point_file(const std::string& name);
+  Shape dexel_file(const std::string& name);
 
   /// The shape moved; `placement` nullptr: where it is.
   Shape placed(const Shape& shape, const Affine* placement);
@@ -39,7 +40,7 @@ class Workshop {
   std::filesystem::path folder_;
   std::uint64_t left_;
   Run& run_;
-  std::map<std::filesystem::path, Shape> meshes_, points_;
+  std::map<std::filesystem::path, Shape> meshes_, points_, dexels_;
 };
 
 /// Reads a JSON scene. @throws UnusableInput, NotAvailable

@@ -234,6 +234,34 @@ TEST_F(Jobs, WritesTheShellAndItsCut) {
   EXPECT_NE(read("s.html").find("cut through the shell"), std::string::npos);
 }
 
+TEST_F(Jobs, DexelsGoOutAndComeIn) {
+  ASSERT_EQ(run({"mesh", "gallery:torus", "-n", "300", "-o", "a.ply", "--dump-dexels", "a.tdx", "-q"}).status, 0);
+  write("scene.json", R"({"difference": [{"dexels": "a.tdx"}, {"implicit": "-x"}]})");
+  ASSERT_EQ(run({"mesh", "a.tdx", "-n", "300", "-o", "b.ply", "-q"}).status, 0);
+  EXPECT_EQ(Json::parse(info("b.ply")).at("euler"), 0);
+  ASSERT_EQ(run({"mesh", "scene.json", "-n", "300", "-o", "c.ply", "-q"}).status, 0);
+  EXPECT_EQ(Json::parse(info("c.ply")).at("euler"), 2) << "half a ring";
+  EXPECT_NEAR(Json::parse(info("c.ply")).at("volume").get<double>(),
+              Json::parse(info("b.ply")).at("volume").get<double>() / 2, 0.05);
+}
+
+TEST_F(Jobs, RepairsWhatIsBroken) {
+  // A tetrahedron of loose triangles, one of them turned, one missing a corner of its own.
+  write("loose.stl",
+        "solid x\n"
+        "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet\n"
+        "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\nendfacet\n"
+        "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\n"
+        "facet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet\nendsolid x\n");
+  const Outcome outcome = run({"repair", "loose.stl", "-n", "300", "-o", "r.ply"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("1 triangles turned"), std::string::npos) << outcome.err;
+  const Json figures = Json::parse(info("r.ply"));
+  expect_sound(figures);
+  EXPECT_NEAR(figures.at("volume").get<double>(), 1.0 / 6, 0.01);
+  EXPECT_EQ(run({"repair", "gallery:sphere", "-o", "x.ply"}).status, 2);
+}
+
 TEST_F(Jobs, LeavesOutliersOutOnRequest) {
   std::string points;
   for (int i = 0; i < 1000; ++i) {

@@ -34,7 +34,7 @@ const std::map<std::string, std::string> public_headers{
     {"error.h", "core"},      {"run.h", "core"},        {"mesh.h", "geometry"},       {"shape.h", "shape"},
     {"measure.h", "measure"}, {"io.h", "io"},           {"mesh_shape.h", "pipeline"}, {"render.h", "view"},
     {"points.h", "geometry"}, {"volume.h", "geometry"}, {"solid.h", "shape"},         {"scene.h", "scene"},
-    {"repair.h", "geometry"},
+    {"repair.h", "geometry"}, {"dexels.h", "shape"},
 };
 
 Names visible_from(const std::string& room) {
