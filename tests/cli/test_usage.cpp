@@ -151,7 +151,7 @@ TEST_F(Usage, WrongUsageIsStatus2) {
 
 TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
   write("a.obj", tetrahedron_obj);
-  for (const char* name : {"s.glsl", "s.frag", "s.vdb", "s.nii", "s.nii.gz", "s.nrrd", "s.tdx"}) {
+  for (const char* name : {"s.glsl", "s.frag", "s.vdb", "s.nii", "s.nii.gz", "s.nrrd"}) {
     write(name, "1 2 3\n");
     const Outcome outcome = run({"mesh", name, "-o", "x.ply"});
     EXPECT_EQ(outcome.status, 2) << name;
