@@ -24,7 +24,9 @@ void add_what(CLI::App& app, MeshingArguments& a) {
       "x0,y0,z0,x1,y1,z1 in model units: where the surface is sought;\na surface cut by it is capped; default: found");
   option("--topology", a.topology, "keep",
          "keep: add vertices where the topology needs them (simplify: not available)");
-  option("--features", a.features, "off", "sharp edges: off (auto, ANGLE: not available)");
+  option("--features", a.features, "ANGLE",
+         "sharp edges: where the surface turns by more than ANGLE degrees, 0 to 180,\nthe mesh has an edge: auto = 40, "
+         "or off; solids only; default auto");
   option("--density", a.density, "uniform",
          "vertices per area: uniform, or EXPR in x, y, z, compared with elsewhere\n(curvature, FILE: not available)");
 }

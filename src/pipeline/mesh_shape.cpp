@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "connect/dual_polygons.h"
@@ -13,6 +14,7 @@
 #include "pipeline/shell_cells.h"
 #include "refine/fit.h"
 #include "refine/flips.h"
+#include "refine/holds.h"
 #include "refine/placement.h"
 #include "refine/polish.h"
 #include "refine/projector.h"
@@ -35,6 +37,8 @@ void check(const MeshOptions& o) {
   if (o.thickness && (*o.thickness < 1 || *o.thickness > 20))
     throw InvalidInput("the shell's thickness must lie in [1, 20] voxels");
   if (o.iterations && *o.iterations > 10'000) throw InvalidInput("the iterations must lie in [0, 10000]");
+  if (o.crease_angle && !(*o.crease_angle > 0 && *o.crease_angle < 180))
+    throw InvalidInput("the angle of sharp edges must lie in (0, 180) degrees");
   if (!(o.tolerance > 0 && o.tolerance < 1)) throw InvalidInput("the tolerance must lie in (0, 1)");
   if (o.bounds && !(is_finite(o.bounds->lo) && is_finite(o.bounds->hi)) && !o.bounds->empty())
     throw InvalidInput("the bounds are not finite: give six numbers");
@@ -214,6 +218,7 @@ class Job {
     for (const Triangle& t : cells.triangles) mesh.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
 
     separate(mesh);
+    hold_creases(mesh, cells);
     edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
     if (options_.placement != Placement::centroid && !options_.wrap) {
       projector_ = make_projector(shape_, shape_.bounds, run_);
@@ -222,12 +227,29 @@ class Job {
       if (projector_)
         parallel_for(run_, mesh.vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
           for (std::size_t v = begin; v < end; ++v)
-            mesh.vertices[v] = projector_->project(mesh.vertices[v], 0.5 * edge_);
+            if (!holds_.vertex(static_cast<std::uint32_t>(v)))
+              mesh.vertices[v] = projector_->project(mesh.vertices[v], 0.5 * edge_);
         });
     }
     for (const auto& [label, place] : cells.anchors)
       if (const std::uint32_t v = index[label]; v != 0xffffffffu && at_rim_[v]) mesh.vertices[v] = place;
     return mesh;
+  }
+
+  /// Vertices of seeds on creases go there, except where a ball has covered the crease.
+  void hold_creases(Mesh& mesh, const ConnectedCells& cells) {
+    if (cells.creases.places.empty()) return;
+    holds_.vertices.assign(mesh.vertices.size(), 0);
+    for (std::size_t l = 0; l < cells.creases.places.size(); ++l) {
+      const Vec3& place = cells.creases.places[l];
+      if (const std::uint32_t v = vertex_of_label_[l]; v != 0xffffffffu && cells.balls.outside(place) == place)
+        holds_.vertices[v] = 1, mesh.vertices[v] = place;
+    }
+    for (const auto& [a, b] : cells.creases.edges) {
+      const auto [v, w] = std::minmax(vertex_of_label_[a], vertex_of_label_[b]);
+      if (w != 0xffffffffu) holds_.edges.push_back({v, w});
+    }
+    std::sort(holds_.edges.begin(), holds_.edges.end());
   }
 
   /// Open surfaces: vertices in which several fans of triangles meet are split, and the rim is marked.
@@ -244,13 +266,13 @@ class Job {
 
   void refine(Mesh& mesh, std::vector<std::uint32_t>& labels) {
     if (!measure_quality(mesh, run_).two_manifold()) return;
-    flip_to_delaunay(mesh);
-    polish(mesh, projector_.get(), run_);
-    flip_to_delaunay(mesh);
+    flip_to_delaunay(mesh, holds_);
+    polish(mesh, projector_.get(), run_, holds_);
+    flip_to_delaunay(mesh, holds_);
     if (options_.placement == Placement::quadric) {
       for (std::uint32_t& l : labels) l = vertex_of_label_[l];
       fit_extremes(mesh, samples_, labels, projector_.get(), by_shell_ && !options_.wrap ? 3 * report_.spacing : 0,
-                   run_);
+                   run_, holds_);
     }
     // Files hold single precision: what matters is that the mesh written does not intersect itself.
     const auto find = [&](Mesh m) {
@@ -258,7 +280,7 @@ class Job {
         for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(v[a]);
       return self_intersections(m, run_);
     };
-    report_.self_intersections = untangle(mesh, projector_.get(), find, run_);
+    report_.self_intersections = untangle(mesh, projector_.get(), find, run_, holds_);
   }
 
   void finish(const Mesh& mesh, bool two_manifold) {
@@ -309,6 +331,7 @@ class Job {
   SampleSet samples_;
   ConnectedCells cells_;
   std::unique_ptr<Projector> projector_;
+  Holds holds_;
   std::vector<char> at_rim_;                    ///< by vertex of a label
   std::vector<std::uint32_t> vertex_of_label_;  ///< 0xffffffff: none, its piece of surface is dust
   double edge_ = 0;

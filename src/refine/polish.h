@@ -3,6 +3,7 @@
 
 #include "evenmesh/mesh.h"
 #include "evenmesh/run.h"
+#include "refine/holds.h"
 #include "refine/projector.h"
 
 namespace evenmesh {
@@ -13,6 +14,6 @@ namespace evenmesh {
 ///
 /// Guarantee: the worst triangle does not get worse; same bits for any number of threads. Cost: O(bad triangles), plus
 /// 30 ns for every triangle. Returns the number of moves.
-std::size_t polish(Mesh& mesh, const Projector* projector, Run& run);
+std::size_t polish(Mesh& mesh, const Projector* projector, Run& run, const Holds& holds = {});
 
 }  // namespace evenmesh

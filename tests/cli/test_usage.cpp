@@ -139,9 +139,8 @@ TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
     expect_one_sentence(outcome, "not available in this version");
   }
   const std::vector<Words> options{
-      {"--connect", "fragments"}, {"--topology", "simplify"}, {"--features", "auto"}, {"--features", "40"},
-      {"--density", "curvature"}, {"--backend", "gl"},        {"--error", "0.001"},   {"--max-cycle", "5"},
-      {"--dump-dexels", "a.tdx"}, {"--entry", "map"},
+      {"--connect", "fragments"}, {"--topology", "simplify"}, {"--density", "curvature"}, {"--backend", "gl"},
+      {"--error", "0.001"},       {"--max-cycle", "5"},       {"--dump-dexels", "a.tdx"}, {"--entry", "map"},
   };
   for (const Words& option : options) {
     SCOPED_TRACE(testing::PrintToString(option));
