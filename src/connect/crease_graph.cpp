@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "connect/brick_union.h"
 
@@ -20,7 +21,7 @@ void PlaneQuadric::add(const PlaneQuadric& other) {
 }
 
 Vec3 PlaneQuadric::minimum(int least, int most) const {
-  constexpr double smallest_share = 0.03;  // of the largest eigenvalue
+  constexpr double smallest_share = 0.01;  // of the largest eigenvalue
   Eigen::Matrix3d a;
   a << a_[0], a_[1], a_[2], a_[1], a_[3], a_[4], a_[2], a_[4], a_[5];
   const Vec3 m = mean();
@@ -55,12 +56,18 @@ struct BrickNodes {
 
 class Finder {
  public:
-  Finder(const SampleSet& samples, double cosine) : samples_(samples), cosine_(cosine) {}
+  Finder(const SampleSet& samples, double cosine)
+      : samples_(samples),
+        cosine_(cosine),
+        safe_step_(static_cast<int>(32767 * std::acos(cosine) / (3 * std::numbers::sqrt2)) - 2) {}
 
   void visit(const CubeBrick& brick, const std::uint32_t* loop, int n, BrickNodes& found) const {
+    const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
+    bool smooth = true;
+    for (int i = 0; i < n; ++i) smooth &= is_nearly_same(samples_.normal[loop[i]], samples_.normal[loop[after(i)]]);
+    if (smooth) return;
     std::array<Vec3, 12> normal;
     for (int i = 0; i < n; ++i) normal[i] = unpack_normal(samples_.normal[loop[i]]);
-    const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
     bool sharp = false;
     for (int i = 0; i < n; ++i) sharp |= dot(normal[i], normal[after(i)]) < cosine_;
     if (!sharp) return;
@@ -74,6 +81,12 @@ class Finder {
   }
 
  private:
+  /// Whether the angle is surely below the limit: in the octahedral map a step of length d is an angle of 3·d at most.
+  bool is_nearly_same(PackedNormal a, PackedNormal b) const {
+    const int u = int(a.bits & 0xffff) - int(b.bits & 0xffff), v = int(a.bits >> 16) - int(b.bits >> 16);
+    return std::abs(u) < safe_step_ && std::abs(v) < safe_step_;
+  }
+
   CreaseNode make_node(const CubeBrick& brick, const std::uint32_t* loop, const Vec3* normal, int n) const {
     CreaseNode node;
     double weight = 0, area = 0;
@@ -106,6 +119,7 @@ class Finder {
 
   const SampleSet& samples_;
   double cosine_;
+  int safe_step_;  ///< of either coordinate of packed normals
 };
 
 }  // namespace

@@ -12,7 +12,8 @@
 namespace evenmesh {
 namespace {
 
-constexpr double held_distance = 1.5;  ///< grid cells
+constexpr double held_distance = 1.5;    ///< grid cells
+constexpr double most_deviation = 0.08;  ///< of a chord from its chain, in edges
 
 /// A piece of a chain, between its points `point` and `point` + 1.
 struct Segment {
@@ -68,16 +69,40 @@ Vec3 point_at(const CreaseChain& chain, double s) {
   return chain.points[i - 1] + share * (chain.points[i] - chain.points[i - 1]);
 }
 
+/// Largest distance of the chain's points from the chords of n equal pieces.
+double deviation(const CreaseChain& chain, std::uint32_t n) {
+  double worst = 0;
+  for (std::size_t i = 0; i < chain.points.size(); ++i) {
+    const double piece = std::min(std::floor(chain.arc[i] / chain.length() * n), n - 1.0);
+    const Vec3 a = point_at(chain, chain.length() * piece / n), b = point_at(chain, chain.length() * (piece + 1) / n);
+    const Vec3 along = normalized(b - a), from = chain.points[i] - a;
+    worst = std::max(worst, norm(from - dot(from, along) * along));
+  }
+  return worst;
+}
+
+/// Into how many pieces a chain is cut: of the length `edge`, or a little less where it is bent so much that chords
+/// would leave it.
+std::uint32_t segments_of(const CreaseChain& chain, double edge, std::uint32_t least) {
+  auto n = std::max(least, static_cast<std::uint32_t>(std::lround(chain.length() / edge)));
+  for (const std::uint32_t most = n + (n + 1) / 2; n < most && deviation(chain, n) > most_deviation * edge;) ++n;
+  return n;
+}
+
 }  // namespace
+
+std::uint32_t CreaseSeeds::chain_of(std::size_t place) const {
+  return static_cast<std::uint32_t>(std::upper_bound(first.begin(), first.end(), place) - first.begin() - 1);
+}
 
 CreaseSeeds place_crease_seeds(const Creases& creases, double edge) {
   CreaseSeeds seeds;
-  seeds.places = creases.corners;
+  seeds.places = creases.corners, seeds.corners = creases.corners.size();
   std::set<std::pair<std::uint32_t, std::uint32_t>> joined;  // corners with an edge between them
   for (std::uint32_t c = 0; c < creases.chains.size(); ++c) {
     const CreaseChain& chain = creases.chains[c];
     const bool closed = chain.from == CreaseChain::none, loop = chain.from == chain.to;
-    auto n = static_cast<std::uint32_t>(std::max(loop ? 3L : 1L, std::lround(chain.length() / edge)));
+    std::uint32_t n = segments_of(chain, edge, loop ? 3 : 1);
     if (n == 1 && !joined.insert(std::minmax(chain.from, chain.to)).second) n = 2;
     const auto first = static_cast<std::uint32_t>(seeds.places.size());
     seeds.first.push_back(first), seeds.segments.push_back(n);

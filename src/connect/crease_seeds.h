@@ -12,8 +12,12 @@ namespace evenmesh {
 /// Seeds on every corner and evenly spaced along every chain. As labels they are the first ones.
 struct CreaseSeeds {
   std::vector<Vec3> places;                    ///< the corners first, then chain after chain
+  std::size_t corners = 0;                     ///< of the places
   std::vector<std::uint32_t> first, segments;  ///< by chain: its first seed between the ends; pieces it is cut into
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< neighbours along a chain
+
+  /// The chain of a place that is no corner.
+  std::uint32_t chain_of(std::size_t place) const;
 };
 
 /// @param edge  wanted distance between neighbours, model units; chains are cut into equal pieces of about that

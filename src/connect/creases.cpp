@@ -1,6 +1,7 @@
 #include "connect/creases.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -13,10 +14,12 @@ namespace {
 
 using Index = std::uint32_t;
 constexpr Index none = CreaseChain::none;
-constexpr double least_length = 1.5;         ///< of connected chains together, in edges: shorter ones are noise
-constexpr double spur_length = 0.7;          ///< of a branch that ends nowhere, in edges
-constexpr double corner_distance = 1 / 3.0;  ///< corners nearer than this, in edges, are one
-constexpr double sharp_turn = 40;            ///< degrees within a few grid cells: a corner
+constexpr double least_length = 3;       ///< of connected chains together, in edges, and twice that for every loose end
+constexpr double loop_length = 1.5;      ///< of a loop from a corner to itself, in edges
+constexpr double spur_length = 0.7;      ///< of a branch that ends nowhere, in edges
+constexpr double corner_distance = 0.2;  ///< corners nearer than this, in edges, are one
+constexpr double crowded_distance = 0.33;  ///< of chains side by side, in edges
+constexpr double sharp_turn = 40;          ///< degrees within a few grid cells: a corner
 
 /// A path of nodes between two junctions, or a closed one.
 struct Path {
@@ -115,7 +118,8 @@ class Network {
 
   /// From node v along a link to the next junction, or once around.
   Path follow(Index v, Link link, std::vector<char>& used) const {
-    Path path{.from = v};
+    Path path;
+    path.from = v;
     used[link.id] = 1;
     while (link.other != v && links_[link.other].size() == 2) {
       path.nodes.push_back(link.other);
@@ -163,7 +167,7 @@ class Network {
       if (!path.alive || path.from == none) continue;
       const Index a = junction(path.from), b = junction(path.to);
       const bool spur = (count[a] == 1) != (count[b] == 1) && path.length < spur_length * edge_;
-      const bool loop = a == b && path.length < least_length * edge_;
+      const bool loop = a == b && path.length < loop_length * edge_;
       if (spur || loop) path.alive = false, changed = true;
     }
     return changed;
@@ -171,7 +175,7 @@ class Network {
 
   /// Junctions that are nearer to each other than corners may be become one.
   bool contract() {
-    const double limit = std::max(3 * spacing_, corner_distance * edge_);
+    const double limit = std::max(2 * spacing_, corner_distance * edge_);
     const std::vector<Index> count = degrees();
     std::vector<std::pair<double, Index>> order;
     for (Index p = 0; p < paths_.size(); ++p)
@@ -246,9 +250,15 @@ class Network {
       if (path.alive && path.from != none) unite(part, junction(path.from), junction(path.to));
     for (const Path& path : paths_)
       if (path.alive && path.from != none) length[find_root(part, junction(path.from))] += path.length;
-    for (Path& path : paths_)
-      if ((path.from == none ? path.length : length[find_root(part, junction(path.from))]) < least_length * edge_)
-        path.alive = false;
+    std::vector<Index> loose_ends(parent_.size(), 0);
+    const std::vector<Index> count = degrees();
+    for (Index v = 0; v < count.size(); ++v)
+      if (count[v] == 1) ++loose_ends[find_root(part, v)];
+    for (Path& path : paths_) {
+      const Index root = path.from == none ? none : find_root(part, junction(path.from));
+      const double most = root == none ? path.length : length[root], ends = root == none ? 0 : loose_ends[root];
+      if (most < least_length * (1 + 2 * ends) * edge_) path.alive = false;
+    }
     degrees_.clear();
   }
 
@@ -308,13 +318,13 @@ class Polyline {
   /// Where the straight continuations of both sides come nearest to each other; the point itself if that is far.
   Vec3 corner(std::size_t i, double reach, double most) const {
     const double s = up_to_[i];
-    const Vec3 a = at(s - 0.5 * reach), u = normalized(a - at(s - reach));
-    const Vec3 b = at(s + 0.5 * reach), v = normalized(b - at(s + reach));
+    const Vec3 a = at(s - 0.7 * reach), u = normalized(a - at(s - 1.6 * reach));
+    const Vec3 b = at(s + 0.7 * reach), v = normalized(b - at(s + 1.6 * reach));
     const Vec3 w = b - a, n = cross(u, v);
     const double n2 = squared_norm(n);
     if (!(n2 > 0.01)) return points_[i].place;
     const Vec3 p = a + (dot(cross(w, v), n) / n2) * u, q = b + (dot(cross(w, u), n) / n2) * v, middle = 0.5 * (p + q);
-    return norm(middle - points_[i].place) < most ? middle : points_[i].place;
+    return norm(middle - points_[i].place) < most && norm(p - q) < 0.2 * most ? middle : points_[i].place;
   }
 
  private:
@@ -374,7 +384,7 @@ class Chains {
     std::vector<Index> corners;
     for (const std::size_t i : turns) {
       corners.push_back(static_cast<Index>(creases_.corners.size()));
-      creases_.corners.push_back(line.corner(i, reach, 2 * spacing_));
+      creases_.corners.push_back(line.corner(i, reach, 3.5 * spacing_));
       points[i].place = creases_.corners.back();
     }
     const auto piece = [&](std::size_t begin, std::size_t end) {
@@ -395,7 +405,8 @@ class Chains {
   }
 
   void add_chain(const std::vector<Point>& points, Index from, Index to) {
-    CreaseChain chain{.from = from, .to = to};
+    CreaseChain chain;
+    chain.from = from, chain.to = to;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double step =
           i == 0 ? 0 : 0.5 * (points[i - 1].pace + points[i].pace) * norm(points[i].place - points[i - 1].place);
@@ -410,6 +421,76 @@ class Chains {
   std::map<Index, Index> corner_of_;
 };
 
+/// Leaves out chains that run beside others, or beside themselves, nearer than can be meshed, and corners without
+/// chain.
+class Crowding {
+ public:
+  Crowding(const Creases& creases, double reach) : creases_(creases), reach_(reach) {
+    for (Index c = 0; c < creases.chains.size(); ++c)
+      for (Index p = 0; p < creases.chains[c].points.size(); ++p) cells_[cell(at({c, p}))].push_back({c, p});
+  }
+
+  Creases resolved() const {
+    Creases kept;
+    std::map<Index, Index> corners;
+    const auto corner = [&](Index old) {
+      if (old == none) return none;
+      const auto [it, added] = corners.insert({old, static_cast<Index>(kept.corners.size())});
+      if (added) kept.corners.push_back(creases_.corners[old]);
+      return it->second;
+    };
+    for (Index c = 0; c < creases_.chains.size(); ++c) {
+      if (is_crowded(c)) continue;
+      CreaseChain chain = creases_.chains[c];
+      chain.from = corner(chain.from), chain.to = corner(chain.to);
+      kept.chains.push_back(std::move(chain));
+    }
+    return kept;
+  }
+
+ private:
+  struct Place {
+    Index chain, point;
+  };
+  using Cell = std::array<std::int64_t, 3>;
+  const Vec3& at(Place p) const { return creases_.chains[p.chain].points[p.point]; }
+  Cell cell(const Vec3& p) const {
+    return {std::int64_t(std::floor(p.x / reach_)), std::int64_t(std::floor(p.y / reach_)),
+            std::int64_t(std::floor(p.z / reach_))};
+  }
+
+  /// Whether a third of the chain's points, not counting those near its ends, have others beside them.
+  bool is_crowded(Index c) const {
+    const CreaseChain& chain = creases_.chains[c];
+    std::size_t asked = 0, crowded = 0;
+    for (Index p = 0; p < chain.points.size(); ++p) {
+      const bool near_end = chain.from != none && (norm(chain.points[p] - chain.points.front()) < 1.5 * reach_ ||
+                                                   norm(chain.points[p] - chain.points.back()) < 1.5 * reach_);
+      if (!near_end) ++asked, crowded += has_other_beside({c, p});
+    }
+    return 3 * crowded > asked;
+  }
+  bool has_other_beside(Place p) const {
+    const CreaseChain& chain = creases_.chains[p.chain];
+    const Cell home = cell(at(p));
+    for (int d = 0; d < 27; ++d) {
+      const auto it = cells_.find({home[0] + d % 3 - 1, home[1] + d / 3 % 3 - 1, home[2] + d / 9 - 1});
+      if (it == cells_.end()) continue;
+      for (const Place q : it->second) {
+        if (squared_norm(at(q) - at(p)) >= reach_ * reach_) continue;
+        const double along =
+            std::abs(chain.arc[p.point] - chain.arc[std::min<std::size_t>(q.point, chain.arc.size() - 1)]);
+        if (q.chain != p.chain || std::min(along, chain.length() - along) > 4 * reach_) return true;
+      }
+    }
+    return false;
+  }
+
+  const Creases& creases_;
+  double reach_;
+  std::map<Cell, std::vector<Place>> cells_;
+};
+
 }  // namespace
 
 Creases find_creases(const SampleSet& samples, double angle, double edge, Run& run) {
@@ -418,7 +499,8 @@ Creases find_creases(const SampleSet& samples, double angle, double edge, Run& r
   Network network(graph, edge, samples.grid.spacing);
   network.set_origin(samples.grid.origin);
   network.clean();
-  return Chains(edge, samples.grid.spacing).make(network);
+  const Creases all = Chains(edge, samples.grid.spacing).make(network);
+  return Crowding(all, crowded_distance * edge).resolved();
 }
 
 }  // namespace evenmesh

@@ -63,7 +63,8 @@ class Cells {
             .labels = std::move(labels_),
             .triangles = std::move(complex_.triangles),
             .two_manifold = two_manifold,
-            .creases = std::move(crease_seeds_),
+            .creases = std::move(creases_),
+            .crease_seeds = std::move(crease_seeds_),
             .balls = std::move(balls_)};
   }
 

@@ -16,8 +16,9 @@ struct ConnectedCells {
   std::vector<Triangle> triangles;    ///< of labels
   bool two_manifold = false;
   std::vector<std::pair<std::uint32_t, Vec3>> anchors{};  ///< shell: cells at the rim, and their place on it
-  CreaseSeeds creases{};                                  ///< their seeds are the first ones, and have not moved
-  BallIndex balls{{}};  ///< united with the solid where the grid could not tell its topology
+  Creases creases{};
+  CreaseSeeds crease_seeds{};  ///< the first seeds, which have not moved
+  BallIndex balls{{}};         ///< united with the solid where the grid could not tell its topology
 };
 
 /// What the options mean for balancing seeds.

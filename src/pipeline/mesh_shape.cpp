@@ -237,19 +237,21 @@ class Job {
   }
 
   /// Vertices of seeds on creases go there, except where a ball has covered the crease.
-  void hold_creases(Mesh& mesh, const ConnectedCells& cells) {
-    if (cells.creases.places.empty()) return;
-    holds_.vertices.assign(mesh.vertices.size(), 0);
-    for (std::size_t l = 0; l < cells.creases.places.size(); ++l) {
-      const Vec3& place = cells.creases.places[l];
+  void hold_creases(Mesh& mesh, ConnectedCells& cells) {
+    const CreaseSeeds& seeds = cells.crease_seeds;
+    if (seeds.places.empty()) return;
+    holds_.chain.assign(mesh.vertices.size(), Holds::free);
+    for (std::size_t l = 0; l < seeds.places.size(); ++l) {
+      const Vec3& place = seeds.places[l];
       if (const std::uint32_t v = vertex_of_label_[l]; v != 0xffffffffu && cells.balls.outside(place) == place)
-        holds_.vertices[v] = 1, mesh.vertices[v] = place;
+        holds_.chain[v] = l < seeds.corners ? Holds::corner : seeds.chain_of(l), mesh.vertices[v] = place;
     }
-    for (const auto& [a, b] : cells.creases.edges) {
+    for (const auto& [a, b] : seeds.edges) {
       const auto [v, w] = std::minmax(vertex_of_label_[a], vertex_of_label_[b]);
       if (w != 0xffffffffu) holds_.edges.push_back({v, w});
     }
     std::sort(holds_.edges.begin(), holds_.edges.end());
+    holds_.creases = std::move(cells.creases);
   }
 
   /// Open surfaces: vertices in which several fans of triangles meet are split, and the rim is marked.
