@@ -79,6 +79,8 @@ class Cells {
       creases_ = find_creases(samples_, *options_.crease_angle, edge, run_);
       crease_seeds_ = place_crease_seeds(creases_, edge);
     });
+    run_.log(fmt::format("creases: {} chains, {} corners, {} seeds", creases_.chains.size(), creases_.corners.size(),
+                         held()));
     if (2 * held() > count_) {
       report_.notices.push_back({false, fmt::format("sharp edges are left to chance: to follow them takes {} vertices "
                                                     "and more; ask for more, or for --features off",

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "connect/dual_polygons.h"
@@ -19,6 +20,7 @@
 #include "refine/polish.h"
 #include "refine/projector.h"
 #include "refine/untangle.h"
+#include "refine/vertex_rings.h"
 #include "sample/density.h"
 #include "sample/sample.h"
 #include "shape/bounds.h"
@@ -271,6 +273,7 @@ class Job {
     flip_to_delaunay(mesh, holds_);
     polish(mesh, projector_.get(), run_, holds_);
     flip_to_delaunay(mesh, holds_);
+    release_creases(mesh);
     if (options_.placement == Placement::quadric) {
       for (std::uint32_t& l : labels) l = vertex_of_label_[l];
       fit_extremes(mesh, samples_, labels, projector_.get(), by_shell_ && !options_.wrap ? 3 * report_.spacing : 0,
@@ -282,7 +285,21 @@ class Job {
         for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(v[a]);
       return self_intersections(m, run_);
     };
+    if (!holds_.chain.empty())
+      for (const auto& [s, t] : find(mesh)) holds_.release(mesh, std::array{s, t});
     report_.self_intersections = untangle(mesh, projector_.get(), find, run_, holds_);
+  }
+
+  /// Where creases are so near to each other, or meet at so acute an angle, that triangles between them are slivers,
+  /// regular triangles come first.
+  void release_creases(Mesh& mesh) {
+    constexpr double sliver = 0.35;  // angles of 12°
+    if (holds_.chain.empty()) return;
+    const auto slivers = triangles_below(mesh, sliver);
+    if (slivers.empty()) return;
+    holds_.release(mesh, slivers);
+    polish(mesh, projector_.get(), run_, holds_);
+    flip_to_delaunay(mesh, holds_);
   }
 
   void finish(const Mesh& mesh, bool two_manifold) {

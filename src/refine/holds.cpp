@@ -10,6 +10,12 @@ bool Holds::edge(std::uint32_t a, std::uint32_t b) const {
          std::binary_search(edges.begin(), edges.end(), std::array{std::min(a, b), std::max(a, b)});
 }
 
+void Holds::release(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
+  if (chain.empty()) return;
+  for (const std::uint32_t t : triangles)
+    for (const std::uint32_t v : mesh.triangles[t]) chain[v] = free;
+}
+
 Vec3 Holds::slide(std::uint32_t v, const Vec3& p) const {
   const std::vector<Vec3>& points = creases.chains[chain[v]].points;
   double nearest = std::numeric_limits<double>::infinity();

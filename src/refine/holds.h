@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "connect/creases.h"
@@ -22,6 +23,8 @@ struct Holds {
   bool edge(std::uint32_t a, std::uint32_t b) const;
   /// The point of v's crease that is nearest to p. @pre  v is on one
   Vec3 slide(std::uint32_t v, const Vec3& p) const;
+  /// Sets the vertices of those triangles free.
+  void release(const Mesh& mesh, std::span<const std::uint32_t> triangles);
 };
 
 }  // namespace evenmesh
