@@ -73,7 +73,7 @@ class Cells {
 
   /// Where seeds are held so that the mesh gets an edge there.
   void find_sharp_edges() {
-    if (!options_.crease_angle) return;
+    if (!options_.crease_angle || options_.wrap) return;
     stages_.stage("creases", 0.01, [&] {
       const double edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
       creases_ = find_creases(samples_, *options_.crease_angle, edge, run_);
@@ -81,10 +81,15 @@ class Cells {
     });
     run_.log(fmt::format("creases: {} chains, {} corners, {} seeds", creases_.chains.size(), creases_.corners.size(),
                          held()));
-    if (2 * held() > count_) {
-      report_.notices.push_back({false, fmt::format("sharp edges are left to chance: to follow them takes {} vertices "
-                                                    "and more; ask for more, or for --features off",
-                                                    2 * held())});
+    // A web of creases as fine as the mesh, or one around places that were settled by vote, is noise.
+    constexpr std::size_t many_corners = 100;
+    const bool web = creases_.corners.size() > many_corners && 2 * creases_.corners.size() > held();
+    const bool by_vote = 10 * samples_.disagreements > samples_.size();
+    if (web || by_vote || 2 * held() > count_) {
+      if (!by_vote)
+        report_.notices.push_back({false,
+                                   "there are too many sharp edges for meshes this coarse to follow, and none is "
+                                   "held: ask for more vertices"});
       creases_ = {}, crease_seeds_ = {};
     }
     for (const CreaseChain& chain : creases_.chains) report_.crease_length += chain.length();

@@ -9,10 +9,11 @@
 namespace evenmesh {
 namespace {
 
-constexpr double worth_fitting = 0.15;   ///< of the edge length
-constexpr double least_score = 0.913;    ///< Q ≥ 0.639, angles ≥ 34.2°
-constexpr double most_lift = 0.2;        ///< of the edge length
-constexpr double among_the_worst = 0.8;  ///< of the largest deviation: what a round looks at
+constexpr double worth_fitting = 0.15;           ///< of the edge length
+constexpr double least_score = 0.913;            ///< Q ≥ 0.639, angles ≥ 34.2°
+constexpr double least_cosine_at_creases = 0.7;  ///< of a triangle's turn: not from one side of a crease to the other
+constexpr double most_lift = 0.2;                ///< of the edge length
+constexpr double among_the_worst = 0.8;          ///< of the largest deviation: what a round looks at
 constexpr int most_rounds = 16;
 constexpr int most_rounds_inexact = 4;  ///< on samples off the surface: later rounds only cost quality
 constexpr int most_shakes = 2;          ///< rounds around the worst where nothing helps there
@@ -278,9 +279,10 @@ class Attempt {
     return false;
   }
   bool triangles_are_good() const {
+    const double least = fit_.holds.chain.empty() ? 0 : least_cosine_at_creases;
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       const Triangle& t = mesh_.triangles[triangles_[i]];
-      if (rings_.score(t) < floor_ || dot(rings_.normal_of(t), normals_[i]) <= 0) return false;
+      if (rings_.score(t) < floor_ || dot(rings_.normal_of(t), normals_[i]) <= least) return false;
     }
     return true;
   }

@@ -6,6 +6,7 @@
 
 #include "connect/connect_testing.h"
 #include "connect/crease_seeds.h"
+#include "cvt/starts.h"
 #include "geometry/primitives.h"
 #include "shape/expression_field.h"
 
@@ -84,10 +85,11 @@ TEST(CreaseSeeds, AreEvenlySpacedAndNeighboursInTheDual) {
   for (const auto& [a, b] : seeds.edges) EXPECT_NEAR(norm(seeds.places[a] - seeds.places[b]), 0.25, 1e-3);
 
   // Whoever else owns the surface: along the creases the crease's own seeds do.
-  std::vector<Vec3> all = seeds.places;
+  const std::vector<Vec3> others = blue_noise_start(samples, 400, 1);
+  std::vector<Vec3> all = held_and_others(seeds.places, others, 0, 0.15);
   const Vec3 intruder{1, 0.99, 0.125};
   all.push_back(intruder);
-  Run run(2);
+  evenmesh::Run run(2);
   std::vector<std::uint32_t> labels = nearest_labels(samples, all);
   hold_labels(samples, creases, seeds, labels, run);
   const LabelComplex complex = connect_labels(samples, labels, all, run);
