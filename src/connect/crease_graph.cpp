@@ -44,6 +44,7 @@ namespace {
 struct HalfLink {
   std::uint64_t key;  ///< lower sample << 32 | higher sample
   std::uint32_t node;
+  bool sharp;
   friend bool operator<(const HalfLink& a, const HalfLink& b) {
     return a.key != b.key ? a.key < b.key : a.node < b.node;
   }
@@ -56,10 +57,11 @@ struct BrickNodes {
 
 class Finder {
  public:
-  Finder(const SampleSet& samples, double cosine)
+  Finder(const SampleSet& samples, double sharp, double weak)
       : samples_(samples),
-        cosine_(cosine),
-        safe_step_(static_cast<int>(32767 * std::acos(cosine) / (3 * std::numbers::sqrt2)) - 2) {}
+        sharp_(sharp),
+        weak_(weak),
+        safe_step_(static_cast<int>(32767 * std::acos(weak) / (3 * std::numbers::sqrt2)) - 2) {}
 
   void visit(const CubeBrick& brick, const std::uint32_t* loop, int n, BrickNodes& found) const {
     const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
@@ -68,14 +70,14 @@ class Finder {
     if (smooth) return;
     std::array<Vec3, 12> normal;
     for (int i = 0; i < n; ++i) normal[i] = unpack_normal(samples_.normal[loop[i]]);
-    bool sharp = false;
-    for (int i = 0; i < n; ++i) sharp |= dot(normal[i], normal[after(i)]) < cosine_;
-    if (!sharp) return;
+    bool creased = false;
+    for (int i = 0; i < n; ++i) creased |= dot(normal[i], normal[after(i)]) < weak_;
+    if (!creased) return;
     const auto node = static_cast<std::uint32_t>(found.nodes.size());
     for (int i = 0; i < n; ++i)
-      if (dot(normal[i], normal[after(i)]) < cosine_) {
+      if (const double cosine = dot(normal[i], normal[after(i)]); cosine < weak_) {
         const auto [s, t] = std::minmax(loop[i], loop[after(i)]);
-        found.links.push_back({std::uint64_t{s} << 32 | t, node});
+        found.links.push_back({std::uint64_t{s} << 32 | t, node, cosine < sharp_});
       }
     found.nodes.push_back(make_node(brick, loop, normal.data(), n));
   }
@@ -118,16 +120,16 @@ class Finder {
   }
 
   const SampleSet& samples_;
-  double cosine_;
+  double sharp_, weak_;
   int safe_step_;  ///< of either coordinate of packed normals
 };
 
 }  // namespace
 
-CreaseGraph find_crease_graph(const SampleSet& samples, double cosine, Run& run) {
+CreaseGraph find_crease_graph(const SampleSet& samples, double sharp, double weak, Run& run) {
   const auto bricks = cube_bricks(samples, run);
   std::vector<BrickNodes> of_brick(bricks.size());
-  const Finder finder(samples, cosine);
+  const Finder finder(samples, sharp, weak);
   for_loops(samples, bricks, run,
             [&](std::size_t b, const std::uint32_t* loop, int n) { finder.visit(bricks[b], loop, n, of_brick[b]); });
   CreaseGraph graph;
@@ -135,11 +137,14 @@ CreaseGraph find_crease_graph(const SampleSet& samples, double cosine, Run& run)
   for (BrickNodes& found : of_brick) {
     const auto first = static_cast<std::uint32_t>(graph.nodes.size());
     graph.nodes.insert(graph.nodes.end(), found.nodes.begin(), found.nodes.end());
-    for (const HalfLink& link : found.links) halves.push_back({link.key, first + link.node});
+    for (const HalfLink& link : found.links) halves.push_back({link.key, first + link.node, link.sharp});
   }
   parallel_sort(run, halves);
   for (std::size_t i = 0; i + 1 < halves.size(); ++i)
-    if (halves[i].key == halves[i + 1].key) graph.links.push_back({halves[i].node, halves[i + 1].node});
+    if (halves[i].key == halves[i + 1].key) {
+      graph.links.push_back({halves[i].node, halves[i + 1].node});
+      graph.sharp.push_back(halves[i].sharp);
+    }
   return graph;
 }
 

@@ -36,10 +36,12 @@ struct CreaseNode {
 struct CreaseGraph {
   std::vector<CreaseNode> nodes;
   std::vector<std::array<std::uint32_t, 2>> links;
+  std::vector<char> sharp;  ///< by link: beyond the angle asked for
 };
 
-/// @param cosine  of the angle between normals from which on there is a crease
+/// @param sharp  cosine of the angle between normals from which on there is a crease
+/// @param weak   cosine of a smaller angle: what is between the two may continue a crease
 /// Guarantee: same graph for any number of threads. Cost: about 50 ns per sample and core.
-CreaseGraph find_crease_graph(const SampleSet& samples, double cosine, Run& run);
+CreaseGraph find_crease_graph(const SampleSet& samples, double sharp, double weak, Run& run);
 
 }  // namespace evenmesh

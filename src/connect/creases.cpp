@@ -14,11 +14,12 @@ namespace {
 
 using Index = std::uint32_t;
 constexpr Index none = CreaseChain::none;
-constexpr double least_length = 3;       ///< of connected chains together, in edges, and twice that for every loose end
-constexpr double loop_length = 1.5;      ///< of a loop from a corner to itself, in edges
-constexpr double spur_length = 0.7;      ///< of a branch that ends nowhere, in edges
-constexpr double corner_distance = 0.2;  ///< corners nearer than this, in edges, are one
+constexpr double least_length = 3;  ///< of connected chains together, in edges, and five times that for every loose end
+constexpr double loop_length = 1.5;        ///< of a loop from a corner to itself, in edges
+constexpr double spur_length = 0.7;        ///< of a branch that ends nowhere, in edges
+constexpr double corner_distance = 0.2;    ///< corners nearer than this, in edges, are one
 constexpr double crowded_distance = 0.33;  ///< of chains side by side, in edges
+constexpr double weak_angle = 0.65;        ///< of the angle asked for: down to this creases go on that fade
 constexpr double sharp_turn = 40;          ///< degrees within a few grid cells: a corner
 
 /// A path of nodes between two junctions, or a closed one.
@@ -99,11 +100,30 @@ class Network {
     Index other, id;
   };
 
+  /// The sharp links, and the weak ones that continue them.
   void list_links() {
     links_.resize(graph_.nodes.size());
+    std::vector<std::vector<Link>> weak(graph_.nodes.size());
     for (Index i = 0; i < graph_.links.size(); ++i) {
       const auto [a, b] = graph_.links[i];
-      links_[a].push_back({b, i}), links_[b].push_back({a, i});
+      auto& list = graph_.sharp[i] ? links_ : weak;
+      list[a].push_back({b, i}), list[b].push_back({a, i});
+    }
+    std::vector<Index> ends;
+    for (Index v = 0; v < links_.size(); ++v)
+      if (links_[v].size() == 1) ends.push_back(v);
+    for (const Index v : ends) extend(v, weak);
+  }
+
+  /// From a loose end on as long as there is one way to go.
+  void extend(Index v, const std::vector<std::vector<Link>>& weak) {
+    while (links_[v].size() == 1) {
+      std::vector<Link> ways = weak[v];
+      std::erase_if(ways, [&](const Link& way) { return way.id == links_[v][0].id; });
+      if (ways.size() != 1) return;
+      const Index next = ways[0].other;
+      links_[v].push_back(ways[0]), links_[next].push_back({v, ways[0].id});
+      v = next;
     }
   }
 
@@ -257,7 +277,7 @@ class Network {
     for (Path& path : paths_) {
       const Index root = path.from == none ? none : find_root(part, junction(path.from));
       const double most = root == none ? path.length : length[root], ends = root == none ? 0 : loose_ends[root];
-      if (most < least_length * (1 + 2 * ends) * edge_) path.alive = false;
+      if (most < least_length * (1 + 5 * ends) * edge_) path.alive = false;
     }
     degrees_.clear();
   }
@@ -424,7 +444,8 @@ class Chains {
 }  // namespace
 
 Creases find_creases(const SampleSet& samples, double angle, double edge, Run& run) {
-  const CreaseGraph graph = find_crease_graph(samples, std::cos(angle * std::numbers::pi / 180), run);
+  const CreaseGraph graph = find_crease_graph(samples, std::cos(angle * std::numbers::pi / 180),
+                                              std::cos(weak_angle * angle * std::numbers::pi / 180), run);
   if (graph.nodes.empty()) return {};
   Network network(graph, edge, samples.grid.spacing);
   network.set_origin(samples.grid.origin);

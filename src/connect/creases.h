@@ -32,9 +32,9 @@ struct Creases {
 /// are paths of cubes, found without any search in space. A cube's point of the crease is where the tangent planes of
 /// its crossings meet (Ju et al., Dual contouring of Hermite data, 2002); three kinds of planes make a corner.
 ///
-/// Chains much shorter than `edge` are noise and left out; corners nearer than a fifth of it become one. Chains that
-/// run side by side nearer than a third of it, as around thin plates, are left out too: no mesh of such edges follows
-/// both.
+/// Creases that fade are followed down to two thirds of the angle. Connected chains of a few edges' length, or more
+/// with loose ends, are noise and left out; corners nearer than a fifth of it become one. Chains that run side by side
+/// nearer than a third of it, as around thin plates, are left out too: no mesh of such edges follows both.
 /// @param edge  mean edge length of the mesh to come, model units; the grid is a few times finer
 /// Guarantee: same result for any number of threads. Cost: about 50 ns per sample and core.
 Creases find_creases(const SampleSet& samples, double angle, double edge, Run& run);
