@@ -30,7 +30,7 @@ class SegmentIndex {
       for (std::uint32_t p = 0; p + 1 < points.size(); ++p) {
         std::array<std::int64_t, 3> lo{}, hi{};
         for (int a = 0; a < 3; ++a) {
-          const auto [low, high] = std::minmax(points[p][a], points[p + 1][a]);
+          const double low = std::min(points[p][a], points[p + 1][a]), high = std::max(points[p][a], points[p + 1][a]);
           lo[a] = std::max<std::int64_t>(0, std::int64_t(std::floor((low - reach - grid.origin[a]) / side)));
           hi[a] = std::int64_t(std::floor((high + reach - grid.origin[a]) / side));
         }
