@@ -60,8 +60,8 @@ TEST(Creases, SmoothAndRoundedSurfacesHaveNone) {
     EXPECT_TRUE(creases_of(sampled_gallery(name, 96), 0.1).chains.empty()) << name;
 }
 
-TEST(Creases, TurnsAreCorners) {
-  // A prism over a star: its top and bottom edges turn at every tip and every dent.
+TEST(Creases, OfAPrismMeetAtItsCorners) {
+  // A prism over a triangle.
   const Creases creases = creases_of(sampled_expression("max(max(x, y) - 0.8, -x - y - 0.4, abs(z) - 0.6)", 1.5), 0.2);
   EXPECT_EQ(creases.corners.size(), 6u);
   EXPECT_EQ(creases.chains.size(), 9u);
