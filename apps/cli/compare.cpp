@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -21,6 +22,17 @@ struct CompareArguments {
   bool json = false;
 };
 
+std::string crease_line(const MeshDistance& d) {
+  if (d.crease_length == 0) return "  B has no edges sharper than 40°\n";
+  const std::string sharp = fmt::format("  edges of B sharper than 40°: {:.6g} long; ", d.crease_length);
+  if (!std::isfinite(d.crease_max)) return sharp + "A has none above 20°\n";
+  const double edge = d.edge_length_avg > 0 ? d.edge_length_avg : 1;
+  return sharp + fmt::format(
+                     "from them to those of A {:.6g} at most, {:.6g} on average\n  ({:.4f} and {:.4f} of A's mean "
+                     "edge length)\n",
+                     d.crease_max, d.crease_avg, d.crease_max / edge, d.crease_avg / edge);
+}
+
 std::string text(const MeshDistance& d) {
   const auto row = [&](const char* name, double there, double back) {
     const double both = std::max(there, back), diagonal = d.reference_diagonal;
@@ -31,13 +43,16 @@ std::string text(const MeshDistance& d) {
          row("Hausdorff", d.a_to_b_max, d.b_to_a_max) + row("RMS", d.a_to_b_rms, d.b_to_a_rms) +
          row("mean", d.a_to_b_mean, d.b_to_a_mean) +
          fmt::format("  normals deviate by {:.2f}° on average; diagonal of B {:.6g}\n", d.normal_deviation_avg,
-                     d.reference_diagonal);
+                     d.reference_diagonal) +
+         crease_line(d);
 }
 
 std::string json(const MeshDistance& d) {
   const double diagonal = d.reference_diagonal;
   const double rms = std::max(d.a_to_b_rms, d.b_to_a_rms);
   const auto relative = [&](double length) { return diagonal > 0 ? length / diagonal : 0.0; };
+  // JSON has no infinity.
+  const auto finite = [](double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nullptr; };
   const nlohmann::ordered_json object{{"hausdorff", d.hausdorff()},
                                       {"hausdorff_relative", relative(d.hausdorff())},
                                       {"rms", rms},
@@ -49,7 +64,11 @@ std::string json(const MeshDistance& d) {
                                       {"a_to_b_mean", d.a_to_b_mean},
                                       {"b_to_a_mean", d.b_to_a_mean},
                                       {"normal_deviation_avg", d.normal_deviation_avg},
-                                      {"reference_diagonal", diagonal}};
+                                      {"reference_diagonal", diagonal},
+                                      {"crease_max", finite(d.crease_max)},
+                                      {"crease_avg", finite(d.crease_avg)},
+                                      {"crease_length", d.crease_length},
+                                      {"edge_length_avg", d.edge_length_avg}};
   return object.dump(2) + "\n";
 }
 

@@ -29,11 +29,17 @@ void refuse_planned_options(const MeshingArguments& a) {
   if (!a.error.empty()) not_available("--error");
   if (!a.entry.empty()) not_available("--entry");
   choice("--backend", a.backend, {"cpu"}, {"gl"});
-  if (a.features != "off") {
-    if (a.features != "auto") real_number("--features", a.features, 0, 180);
-    not_available("--features " + a.features);
-  }
   if (a.density == "curvature" || std::filesystem::exists(a.density)) not_available("--density " + a.density);
+}
+
+/// Degrees; none: off.
+std::optional<double> crease_angle(const std::string& text) {
+  if (text == "off") return std::nullopt;
+  if (text == "auto") return MeshOptions{}.crease_angle;
+  const double angle = real_number("--features", text, 0, 180);
+  if (!(angle > 0 && angle < 180))
+    throw InvalidInput(fmt::format("--features takes auto, off or an angle between 0 and 180 degrees, not {}", text));
+  return angle;
 }
 
 MeshOptions mesh_options(const MeshingArguments& a) {
@@ -52,6 +58,7 @@ MeshOptions mesh_options(const MeshingArguments& a) {
   if (!a.bounds.empty()) options.bounds = box("--bounds", a.bounds);
   options.method = static_cast<Method>(choice("--method", a.method, {"auto", "raster", "shell"}));
   options.wrap = a.wrap;
+  options.crease_angle = crease_angle(a.features);
   if (!a.thickness.empty()) options.thickness = static_cast<unsigned>(whole_number("--thickness", a.thickness, 1, 20));
   options.quality = static_cast<Quality>(choice("--quality", a.quality, {"fast", "normal", "high"}));
   options.optimizer = static_cast<Optimizer>(choice("--optimizer", a.optimizer, {"lbfgs", "lloyd"}));

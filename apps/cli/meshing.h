@@ -20,7 +20,7 @@ struct MeshingArguments {
   std::string output, format;
   std::string vertices, edge_length, resolution, bounds, iterations, tolerance, seed = "1";
   std::string quality = "normal", optimizer = "lbfgs", start = "coarse-to-fine", placement = "quadric";
-  std::string method = "auto", connect = "complex", topology = "keep", features = "off", density = "uniform";
+  std::string method = "auto", connect = "complex", topology = "keep", features = "auto", density = "uniform";
   std::string backend = "cpu", threads = "0", progress = "auto";
   std::string report, json;
   std::string thickness, outliers, dump_shell;

@@ -25,7 +25,9 @@ void add_what(CLI::App& app, MeshingArguments& a) {
   option("--topology", a.topology, "RULE",
          "keep: add vertices where the topology needs them; simplify: keep the number of\nvertices and fill small "
          "tunnels and gaps of the solid instead; default keep");
-  option("--features", a.features, "off", "sharp edges: off (auto, ANGLE: not available)");
+  option("--features", a.features, "ANGLE",
+         "sharp edges: where the surface turns by more than ANGLE degrees, 0 to 180,\nthe mesh has an edge: auto = 40, "
+         "or off; solids only; default auto");
   option("--density", a.density, "uniform",
          "vertices per area: uniform, or EXPR in x, y, z, compared with elsewhere\n(curvature, FILE: not available)");
 }

@@ -69,6 +69,11 @@ struct MeshDistance {
   double normal_deviation_avg =
       0;  ///< mean angle in degrees between the normals at a's samples and their closest points on b
   double reference_diagonal = 0;  ///< bounding-box diagonal of b
+  /// From the sharp edges of b, those that turn by more than 40°, to the nearest of a that turn by more than 20°:
+  /// largest and mean distance, model units; infinite when a has none.
+  double crease_max = 0, crease_avg = 0;
+  double crease_length = 0;    ///< of the sharp edges of b, model units; 0: it has none
+  double edge_length_avg = 0;  ///< mean edge length of a, model units
   double hausdorff() const { return std::max(a_to_b_max, b_to_a_max); }
 };
 struct CompareOptions {

@@ -41,11 +41,13 @@ struct MeshOptions {
   Method method = Method::automatic;
   std::optional<unsigned> thickness{};  ///< half width d of the shell in voxels, [1, 20]: holes and gaps narrower than
                                         ///< 2d are bridged; default 2, for point clouds by their spacing
-  bool fill_cavities = false;           ///< of solids, keep what the outside reaches: their outer hull
-  bool wrap = false;                    ///< a closed mesh one voxel around the surface instead, by the shell
-  Density density{};                    ///< none: even. Smooth, and at most a hundred times its mean
-  std::optional<Box> bounds{};          ///< replaces the shape's own; a surface cut by it is capped
-  Quality quality = Quality::normal;    ///< effort of the optimization
+  /// Sharp edges: where the surface turns by more than this, degrees in (0, 180), the mesh gets an edge. None: off.
+  std::optional<double> crease_angle{40};
+  bool fill_cavities = false;         ///< of solids, keep what the outside reaches: their outer hull
+  bool wrap = false;                  ///< a closed mesh one voxel around the surface instead, by the shell
+  Density density{};                  ///< none: even. Smooth, and at most a hundred times its mean
+  std::optional<Box> bounds{};        ///< replaces the shape's own; a surface cut by it is capped
+  Quality quality = Quality::normal;  ///< effort of the optimization
   Optimizer optimizer = Optimizer::lbfgs;
   Start start = Start::coarse_to_fine;
   Connect connect = Connect::complex;
@@ -90,7 +92,9 @@ struct Report {
   std::size_t cuts = 0;          ///< shell: sheets that had to end where others meet them, and vertices that were split
   std::size_t merges = 0;        ///< shell: gaps between sheets that it fills, hiding surface
   unsigned thickness_apart = 0;  ///< shell: the largest thickness that fills none of them; 0: the voxels are too large
-  std::size_t inserted_seeds = 0;  ///< added because the topology needed them
+  std::size_t crease_vertices = 0;  ///< vertices held on sharp edges
+  double crease_length = 0;         ///< of the sharp edges, model units
+  std::size_t inserted_seeds = 0;   ///< added because the topology needed them
   std::size_t regularization_rounds = 0;
   std::vector<double> cycle_shares;  ///< Connect::fragments: edges from cycles of 3, 4, … of all, in [0, 1]
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time per stage, in order

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/random.h"
 #include "cvt/starts.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr std::size_t coarsest_seeds = 300;  ///< fewer cannot follow the shape; more leave more grain boundaries
 constexpr double samples_per_seed = 80;      ///< wanted on every level
+constexpr double clear_distance = 0.6;       ///< of others from seeds that are held, in edges, before they are balanced
 
 /// The sample set and thinner and thinner versions of it, each with its evaluator.
 class Pyramid {
@@ -93,10 +95,23 @@ class Balance {
     const SampleSet& samples = pyramid_.for_seeds(n).samples();
     seeds_ = options_.start == SeedStart::random ? random_start(samples, n, options_.seed)
                                                  : blue_noise_start(samples, n, options_.seed);
+    hold(n);
+    adjust_count(pyramid_.for_seeds(n), seeds_, n, options_.seed + 4, run_, held_);
+  }
+
+  /// Puts those seeds first that are to be held among n; not on coarse levels where they would leave no room for
+  /// others.
+  void hold(std::size_t n) {
+    if (!options_.held) return;
+    std::vector<Vec3> held = options_.held(n);
+    if (2 * held.size() > n && n != count_) held.clear();
+    const double edge = std::sqrt(2 * pyramid_.finest().samples().total_area / (std::numbers::sqrt3 * double(n)));
+    seeds_ = held_and_others(held, seeds_, held_, clear_distance * edge);
+    held_ = held.size();
   }
 
   double relax(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t evaluations) {
-    const auto result = optimize(evaluator, seeds, {options_.lloyd, evaluations, options_.tolerance}, run_);
+    const auto result = optimize(evaluator, seeds, {options_.lloyd, evaluations, options_.tolerance, held_}, run_);
     ratios_.insert(ratios_.end(), result.ratios.begin(), result.ratios.end());
     return result.energy;
   }
@@ -109,7 +124,8 @@ class Balance {
     for (double round = 0; round < rounds; ++round) {
       const double amplitude = 0.25 * spacing * (1 - round / rounds);
       std::vector<Vec3> shaken = seeds_;
-      for (Vec3& s : shaken) s += amplitude * Vec3{random.gaussian(), random.gaussian(), random.gaussian()};
+      for (std::size_t s = held_; s < shaken.size(); ++s)
+        shaken[s] += amplitude * Vec3{random.gaussian(), random.gaussian(), random.gaussian()};
       const double energy = relax(evaluator, shaken, evaluations(true));
       if (energy < best) best = energy, seeds_.swap(shaken);
     }
@@ -126,12 +142,13 @@ class Balance {
     const std::int64_t change = (static_cast<std::int64_t>(target) - after) / 4;
     if (std::abs(change) * 100 > now) {
       adjust_count(evaluator, seeds_, static_cast<std::size_t>(std::max<std::int64_t>(4, now + change)),
-                   options_.seed + 2, run_);
+                   options_.seed + 2, run_, held_);
       relax(pyramid_.for_seeds(seeds_.size()), seeds_, evaluations(false) / 3);
       middles = neighbour_middles(evaluator, seeds_, run_);
     }
     seeds_.insert(seeds_.end(), middles.begin(), middles.end());
-    adjust_count(evaluator, seeds_, target, options_.seed + 3, run_);
+    hold(target);
+    adjust_count(evaluator, seeds_, target, options_.seed + 3, run_, held_);
   }
 
   std::size_t count_;
@@ -140,6 +157,7 @@ class Balance {
   std::size_t levels_;
   Pyramid pyramid_;
   std::vector<Vec3> seeds_;
+  std::size_t held_ = 0;  ///< of them, the first ones
   std::vector<double> ratios_;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Seeds in balance: the whole schedule from samples to a converged CVT.
 
+#include <functional>
 #include <optional>
 
 #include "cvt/optimize.h"
@@ -17,10 +18,12 @@ struct BalanceOptions {
   std::size_t annealing_rounds = 0;        ///< on the coarsest level
   double tolerance = 1e-4;                 ///< see OptimizeOptions
   std::uint64_t seed = 1;
+  /// Seeds that stay where they are, when there are so many altogether; none: all move.
+  std::function<std::vector<Vec3>(std::size_t count)> held{};
 };
 
 struct BalanceResult {
-  std::vector<Vec3> seeds;
+  std::vector<Vec3> seeds;     ///< those that are held come first
   std::vector<double> ratios;  ///< energy ratio of every evaluation, all levels in turn
   double energy_ratio = 0;     ///< of the seeds returned, on the samples given
 };

@@ -107,7 +107,7 @@ OptimizeResult optimize(CellEvaluator& evaluator, std::vector<Vec3>& seeds, cons
   Vectors gradient(k), step(k), trial(k), trial_gradient(k);
   std::vector<double> inverse_diagonal(k);
   const auto gradient_of = [&](const CellSums& s, Vectors& g) {
-    algebra.each(k, [&](std::size_t i) { g[i] = -2.0 * s.moment[i]; });
+    algebra.each(k, [&](std::size_t i) { g[i] = i < options.held ? Vec3{} : -2.0 * s.moment[i]; });
   };
   gradient_of(sums, gradient);
 

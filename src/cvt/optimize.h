@@ -11,6 +11,7 @@ struct OptimizeOptions {
   bool lloyd = false;            ///< Lloyd's iteration instead of L-BFGS
   std::size_t evaluations = 50;  ///< of the energy, at most
   double tolerance = 1e-4;       ///< stop when the mean step is below this share of the seed spacing √(A/k)
+  std::size_t held = 0;          ///< so many seeds, the first ones, stay where they are
 };
 
 struct OptimizeResult {

@@ -146,7 +146,8 @@ std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<
   return middles;
 }
 
-void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run) {
+void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run,
+                  std::size_t held) {
   run.throw_if_cancelled();
   if (seeds.size() == count) return;
   const SampleSet& samples = evaluator.samples();
@@ -154,9 +155,10 @@ void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_
   evaluator.nearest(seeds, labels);
   std::vector<double> mass(seeds.size(), 0);
   for (std::size_t i = 0; i < labels.size(); ++i) mass[labels[i]] += samples.area[i];
-  std::vector<std::uint32_t> order(seeds.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
   const bool remove = seeds.size() > count;
+  const std::size_t first = remove ? std::min(held, count) : 0;
+  std::vector<std::uint32_t> order(seeds.size() - first);
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(first + i);
   std::sort(order.begin(), order.end(), [&](auto a, auto b) {
     return mass[a] != mass[b] ? (remove ? mass[a] < mass[b] : mass[a] > mass[b]) : a < b;
   });
@@ -198,6 +200,29 @@ void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_
   // Cells without samples, or with fewer than were wanted of them: the rest goes anywhere.
   const std::vector<Vec3> rest = random_start(samples, count - seeds.size(), seed + 1);
   seeds.insert(seeds.end(), rest.begin(), rest.end());
+}
+
+std::vector<Vec3> held_and_others(std::span<const Vec3> held, const std::vector<Vec3>& seeds, std::size_t first,
+                                  double reach) {
+  const auto key = [&](const Vec3& p, int i, int j, int k) {
+    const auto at = [&](double x, int d) {
+      return static_cast<std::uint64_t>(std::int64_t(std::floor(x / reach)) + d);
+    };
+    return (at(p.x, i) * 0x9e3779b97f4a7c15ull + at(p.y, j)) * 0xbf58476d1ce4e5b9ull + at(p.z, k);
+  };
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells;
+  for (std::uint32_t h = 0; h < held.size(); ++h) cells[key(held[h], 0, 0, 0)].push_back(h);
+  const auto is_near = [&](const Vec3& p) {
+    for (int d = 0; d < 27; ++d)
+      if (const auto it = cells.find(key(p, d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1)); it != cells.end())
+        for (const std::uint32_t h : it->second)
+          if (squared_norm(held[h] - p) < reach * reach) return true;
+    return false;
+  };
+  std::vector<Vec3> all(held.begin(), held.end());
+  for (std::size_t s = first; s < seeds.size(); ++s)
+    if (!is_near(seeds[s])) all.push_back(seeds[s]);
+  return all;
 }
 
 }  // namespace evenmesh

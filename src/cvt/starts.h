@@ -2,6 +2,7 @@
 /// Where seeds start.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "cvt/cells.h"
@@ -23,7 +24,12 @@ std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, 
 std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run);
 
 /// Adds seeds at random samples of the heaviest cells, or removes the seeds of the lightest, until there are exactly
-/// `count`. Seeds that stay keep their order; balance them afterwards.
-void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run);
+/// `count`. The first `held` stay. Seeds that stay keep their order; balance them afterwards.
+void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run,
+                  std::size_t held = 0);
+
+/// `held`, followed by those seeds, from index `first` on, that are not nearer than `reach` to one of them.
+std::vector<Vec3> held_and_others(std::span<const Vec3> held, const std::vector<Vec3>& seeds, std::size_t first,
+                                  double reach);
 
 }  // namespace evenmesh

@@ -7,6 +7,7 @@
 #include "evenmesh/measure.h"
 #include "geometry/closest_point.h"
 #include "geometry/triangle.h"
+#include "measure/crease_distance.h"
 
 namespace evenmesh {
 namespace {
@@ -149,6 +150,9 @@ MeshDistance compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& 
     result.a_to_b_mean = from_a.sum / samples, result.b_to_a_mean = from_b.sum / samples;
     result.normal_deviation_avg = from_a.angles / samples;
     result.reference_diagonal = b.bounds().diagonal();
+    result.edge_length_avg = mean_edge_length(a);
+    const CreaseDistance creases = crease_distance(b, a, 0.1 * result.edge_length_avg, run);
+    result.crease_max = creases.largest, result.crease_avg = creases.mean, result.crease_length = creases.length;
     return result;
   });
 }

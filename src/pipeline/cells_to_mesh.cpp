@@ -66,6 +66,7 @@ class Cells {
         evaluator_(make_evaluator()) {}
 
   ConnectedCells result() {
+    find_sharp_edges();
     balance(count_);
     connect();
     clear_dust();
@@ -81,15 +82,49 @@ class Cells {
             .labels = std::move(labels_),
             .triangles = std::move(complex_.triangles),
             .two_manifold = two_manifold,
+            .creases = std::move(creases_),
+            .crease_seeds = std::move(crease_seeds_),
             .balls = std::move(balls_)};
   }
 
  private:
   std::unique_ptr<CellEvaluator> make_evaluator() { return std::make_unique<CellEvaluator>(samples_, run_); }
 
+  /// Where seeds are held so that the mesh gets an edge there.
+  void find_sharp_edges() {
+    if (!options_.crease_angle || options_.wrap) return;
+    stages_.stage("creases", 0.01, [&] {
+      const double edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
+      creases_ = find_creases(samples_, *options_.crease_angle, edge, run_);
+      crease_seeds_ = place_crease_seeds(creases_, edge);
+    });
+    run_.log(fmt::format("creases: {} chains, {} corners, {} seeds", creases_.chains.size(), creases_.corners.size(),
+                         held()));
+    // A web of creases as fine as the mesh, or one around places that were settled by vote, is noise.
+    constexpr std::size_t many_corners = 100;
+    const bool web = creases_.corners.size() > many_corners && 2 * creases_.corners.size() > held();
+    const bool by_vote = 10 * samples_.disagreements > samples_.size();
+    if (web || by_vote || 2 * held() > count_) {
+      if (!by_vote)
+        report_.notices.push_back({false,
+                                   "there are too many sharp edges for meshes this coarse to follow, and none is "
+                                   "held: ask for more vertices"});
+      creases_ = {}, crease_seeds_ = {};
+    }
+    for (const CreaseChain& chain : creases_.chains) report_.crease_length += chain.length();
+    report_.crease_vertices = held();
+  }
+  std::size_t held() const { return crease_seeds_.places.size(); }
+
   void balance(std::size_t count) {
     stages_.stage("balance", 0.6, [&] {
-      BalanceResult result = balance_seeds(*evaluator_, count, balance_options(options_), run_);
+      BalanceOptions balance = balance_options(options_);
+      if (held() > 0)
+        balance.held = [&](std::size_t seeds) {
+          if (2 * seeds > count) return crease_seeds_.places;
+          return place_crease_seeds(creases_, edge_length_of(samples_.total_area, double(seeds))).places;
+        };
+      BalanceResult result = balance_seeds(*evaluator_, count, balance, run_);
       seeds_ = std::move(result.seeds);
       report_.energies.insert(report_.energies.end(), result.ratios.begin(), result.ratios.end());
       report_.energy_ratio = result.energy_ratio;
@@ -98,9 +133,9 @@ class Cells {
 
   void settle(std::size_t effort = 1) {
     stages_.stage("balance", 0, [&] {
-      const auto result =
-          optimize(*evaluator_, seeds_,
-                   {options_.optimizer == Optimizer::lloyd, effort * settling_evaluations, options_.tolerance}, run_);
+      const auto result = optimize(
+          *evaluator_, seeds_,
+          {options_.optimizer == Optimizer::lloyd, effort * settling_evaluations, options_.tolerance, held()}, run_);
       report_.energies.insert(report_.energies.end(), result.ratios.begin(), result.ratios.end());
     });
   }
@@ -113,6 +148,7 @@ class Cells {
         return;
       }
       if (options_.connect == Connect::flood) flood_labels(samples_, labels_, seeds_, run_);
+      if (held() > 0) hold_labels(samples_, creases_, crease_seeds_, labels_, run_);
       complex_ = connect_labels(samples_, labels_, seeds_, run_);
       for (const CellPiece& piece : complex_.pieces) seeds_.push_back(piece.centroid);
     });
@@ -165,14 +201,14 @@ class Cells {
       for (const std::uint32_t l : labels_) owns[l] = 1;
       std::size_t kept = 0;
       for (std::size_t s = 0; s < seeds_.size(); ++s)
-        if (owns[s]) seeds_[kept++] = seeds_[s];
+        if (owns[s] || s < held()) seeds_[kept++] = seeds_[s];
       seeds_.resize(kept);
-      if (kept < given) adjust_count(*evaluator_, seeds_, given, options_.seed + 7, run_);
+      if (kept < given) adjust_count(*evaluator_, seeds_, given, options_.seed + 7, run_, held());
     });
   }
 
   void adjust_and_settle(std::size_t count) {
-    stages_.stage("balance", 0, [&] { adjust_count(*evaluator_, seeds_, count, options_.seed + 7, run_); });
+    stages_.stage("balance", 0, [&] { adjust_count(*evaluator_, seeds_, count, options_.seed + 7, run_, held()); });
     settle();
   }
 
@@ -182,13 +218,14 @@ class Cells {
       const double made = static_cast<double>(complex_.labels), wanted = static_cast<double>(count_);
       if (made <= 1.001 * wanted) return;
       const double seeds = made - static_cast<double>(complex_.pieces.size());
-      const auto fewer = static_cast<std::size_t>(std::max(4.0, std::round(seeds * wanted / made)));
+      const auto fewer = static_cast<std::size_t>(std::max(4.0 + double(held()), std::round(seeds * wanted / made)));
       if (made > 1.1 * wanted) {
         balance(fewer);
       } else {
         forget_pieces();
         const std::size_t given = seeds_.size();
-        adjust_and_settle(std::min(given, std::max<std::size_t>(4, given - static_cast<std::size_t>(made - wanted))));
+        adjust_and_settle(
+            std::min(given, std::max<std::size_t>(4 + held(), given - static_cast<std::size_t>(made - wanted))));
       }
       connect();
     }
@@ -281,8 +318,11 @@ class Cells {
       const std::size_t given = std::min(seeds_.size(), count_);
       samples_ = unite_balls(samples_, balls, run_);
       evaluator_ = make_evaluator();
-      clear_around(seeds_, balls_, changed, edge());
-      if (seeds_.size() < given) adjust_count(*evaluator_, seeds_, given, options_.seed + 11, run_);
+      std::vector<Vec3> others(seeds_.begin() + static_cast<std::ptrdiff_t>(held()), seeds_.end());
+      clear_around(others, balls_, changed, edge());
+      seeds_.resize(held());
+      seeds_.insert(seeds_.end(), others.begin(), others.end());
+      if (seeds_.size() < given) adjust_count(*evaluator_, seeds_, given, options_.seed + 11, run_, held());
       ++report_.regularization_rounds;
     });
   }
@@ -320,7 +360,7 @@ class Cells {
   void change_count(bool fewer, std::size_t change) {
     stages_.stage("balance", 0, [&] {
       if (fewer)
-        remove_common_cells(samples_, seeds_, labels_, change);
+        remove_common_cells(samples_, seeds_, labels_, change, held());
       else
         adjust_count(*evaluator_, seeds_, seeds_.size() + change, options_.seed + 13, run_);
     });
@@ -346,6 +386,8 @@ class Cells {
   std::vector<Vec3> seeds_;
   std::vector<std::uint32_t> labels_;
   LabelComplex complex_;
+  Creases creases_;
+  CreaseSeeds crease_seeds_;
   BallIndex balls_{{}};
 };
 

@@ -2,6 +2,7 @@
 /// The loop between cells and triangles: connect, insert seeds where the topology needs them, until two-manifold.
 
 #include "connect/balls.h"
+#include "connect/crease_seeds.h"
 #include "connect/label_complex.h"
 #include "cvt/balance.h"
 #include "evenmesh/mesh_shape.h"
@@ -15,7 +16,9 @@ struct ConnectedCells {
   std::vector<Triangle> triangles;    ///< of labels
   bool two_manifold = false;
   std::vector<std::pair<std::uint32_t, Vec3>> anchors{};  ///< shell: cells at the rim, and their place on it
-  BallIndex balls{{}};  ///< united with the solid where the grid could not tell its topology
+  Creases creases{};
+  CreaseSeeds crease_seeds{};  ///< the first seeds, which have not moved
+  BallIndex balls{{}};         ///< united with the solid where the grid could not tell its topology
 };
 
 /// What the options mean for balancing seeds.

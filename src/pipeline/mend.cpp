@@ -199,7 +199,7 @@ void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<co
 }
 
 void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std::span<const std::uint32_t> labels,
-                         std::size_t count) {
+                         std::size_t count, std::size_t held) {
   if (seeds.empty()) return;
   std::vector<double> area(seeds.size(), 0);
   for (std::size_t i = 0; i < labels.size(); ++i)
@@ -209,17 +209,17 @@ void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double median = *middle, apart = 1.6 * std::sqrt(median);
   std::vector<std::uint32_t> order;
-  for (std::uint32_t s = 0; s < seeds.size(); ++s)
+  for (auto s = static_cast<std::uint32_t>(held); s < seeds.size(); ++s)
     if (area[s] >= 0.9 * median) order.push_back(s);
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return area[a] != area[b] ? area[a] < area[b] : a < b; });
 
   const PointIndex index(seeds, apart);
-  std::vector<char> gone(seeds.size(), 0), held(seeds.size(), 0);
+  std::vector<char> gone(seeds.size(), 0), beside(seeds.size(), 0);
   for (const std::uint32_t s : order) {
     if (count == 0) break;
-    if (held[s]) continue;
+    if (beside[s]) continue;
     gone[s] = 1, --count;
-    index.near(seeds[s], apart, [&](std::uint32_t t) { held[t] = 1; });
+    index.near(seeds[s], apart, [&](std::uint32_t t) { beside[t] = 1; });
   }
   std::size_t kept = 0;
   for (std::size_t s = 0; s < seeds.size(); ++s)

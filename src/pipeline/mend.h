@@ -41,7 +41,8 @@ void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<co
 /// the place over, while small cells are where the topology needs them. Removes fewer when there is no room for so
 /// many.
 /// @param labels  cells of the seeds; labels from seeds.size() on are those of pieces
+/// @param held  so many seeds, the first ones, stay
 void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std::span<const std::uint32_t> labels,
-                         std::size_t count);
+                         std::size_t count, std::size_t held = 0);
 
 }  // namespace evenmesh

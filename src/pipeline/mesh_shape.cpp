@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "connect/dual_polygons.h"
@@ -15,10 +17,12 @@
 #include "pipeline/shell_cells.h"
 #include "refine/fit.h"
 #include "refine/flips.h"
+#include "refine/holds.h"
 #include "refine/placement.h"
 #include "refine/polish.h"
 #include "refine/projector.h"
 #include "refine/untangle.h"
+#include "refine/vertex_rings.h"
 #include "sample/density.h"
 #include "sample/dexels.h"
 #include "sample/sample.h"
@@ -39,6 +43,8 @@ void check(const MeshOptions& o) {
     throw InvalidInput("the shell's thickness must lie in [1, 20] voxels");
   if (o.max_cycle < 3 || o.max_cycle > 8) throw InvalidInput("the longest cycle must lie in [3, 8] edges");
   if (o.iterations && *o.iterations > 10'000) throw InvalidInput("the iterations must lie in [0, 10000]");
+  if (o.crease_angle && !(*o.crease_angle > 0 && *o.crease_angle < 180))
+    throw InvalidInput("the angle of sharp edges must lie in (0, 180) degrees");
   if (!(o.tolerance > 0 && o.tolerance < 1)) throw InvalidInput("the tolerance must lie in (0, 1)");
   if (o.bounds && !(is_finite(o.bounds->lo) && is_finite(o.bounds->hi)) && !o.bounds->empty())
     throw InvalidInput("the bounds are not finite: give six numbers");
@@ -247,6 +253,7 @@ class Job {
     for (const Triangle& t : cells.triangles) mesh.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
 
     separate(mesh);
+    hold_creases(mesh, cells);
     edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
     if (options_.placement != Placement::centroid && !options_.wrap) {
       projector_ = shape_.compound() ? make_projector(samples_) : make_projector(shape_, shape_.bounds, run_);
@@ -255,12 +262,31 @@ class Job {
       if (projector_)
         parallel_for(run_, mesh.vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
           for (std::size_t v = begin; v < end; ++v)
-            mesh.vertices[v] = projector_->project(mesh.vertices[v], 0.5 * edge_);
+            if (!holds_.vertex(static_cast<std::uint32_t>(v)))
+              mesh.vertices[v] = projector_->project(mesh.vertices[v], 0.5 * edge_);
         });
     }
     for (const auto& [label, place] : cells.anchors)
       if (const std::uint32_t v = index[label]; v != 0xffffffffu && at_rim_[v]) mesh.vertices[v] = place;
     return mesh;
+  }
+
+  /// Vertices of seeds on creases go there, except where a ball has covered the crease.
+  void hold_creases(Mesh& mesh, ConnectedCells& cells) {
+    const CreaseSeeds& seeds = cells.crease_seeds;
+    if (seeds.places.empty()) return;
+    holds_.chain.assign(mesh.vertices.size(), Holds::free);
+    for (std::size_t l = 0; l < seeds.places.size(); ++l) {
+      const Vec3& place = seeds.places[l];
+      if (const std::uint32_t v = vertex_of_label_[l]; v != 0xffffffffu && cells.balls.outside(place) == place)
+        holds_.chain[v] = l < seeds.corners ? Holds::corner : seeds.chain_of(l), mesh.vertices[v] = place;
+    }
+    for (const auto& [a, b] : seeds.edges) {
+      const auto [v, w] = std::minmax(vertex_of_label_[a], vertex_of_label_[b]);
+      if (w != 0xffffffffu) holds_.edges.push_back({v, w});
+    }
+    std::sort(holds_.edges.begin(), holds_.edges.end());
+    holds_.creases = std::move(cells.creases);
   }
 
   /// Open surfaces and fragments: vertices in which several fans of triangles meet are split, and the rim is marked.
@@ -278,13 +304,14 @@ class Job {
 
   void refine(Mesh& mesh, std::vector<std::uint32_t>& labels) {
     if (!measure_quality(mesh, run_).two_manifold()) return;
-    flip_to_delaunay(mesh);
-    polish(mesh, projector_.get(), run_);
-    flip_to_delaunay(mesh);
+    flip_to_delaunay(mesh, holds_);
+    polish(mesh, projector_.get(), run_, holds_);
+    flip_to_delaunay(mesh, holds_);
+    release_creases(mesh);
     if (options_.placement == Placement::quadric) {
       for (std::uint32_t& l : labels) l = vertex_of_label_[l];
       fit_extremes(mesh, samples_, labels, projector_.get(), by_shell_ && !options_.wrap ? 3 * report_.spacing : 0,
-                   run_);
+                   run_, holds_);
     }
     // Files hold single precision: what matters is that the mesh written does not intersect itself.
     const auto find = [&](Mesh m) {
@@ -292,7 +319,21 @@ class Job {
         for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(v[a]);
       return self_intersections(m, run_);
     };
-    report_.self_intersections = untangle(mesh, projector_.get(), find, run_);
+    if (!holds_.chain.empty())
+      for (const auto& [s, t] : find(mesh)) holds_.release(mesh, std::array{s, t});
+    report_.self_intersections = untangle(mesh, projector_.get(), find, run_, holds_);
+  }
+
+  /// Where creases are so near to each other, or meet at so acute an angle, that triangles between them are slivers,
+  /// regular triangles come first.
+  void release_creases(Mesh& mesh) {
+    constexpr double sliver = 0.35;  // angles of 12°
+    if (holds_.chain.empty()) return;
+    const auto slivers = triangles_below(mesh, sliver);
+    if (slivers.empty()) return;
+    holds_.release(mesh, slivers);
+    polish(mesh, projector_.get(), run_, holds_);
+    flip_to_delaunay(mesh, holds_);
   }
 
   void finish(const Mesh& mesh, bool two_manifold) {
@@ -349,6 +390,7 @@ class Job {
   SampleSet samples_;
   ConnectedCells cells_;
   std::unique_ptr<Projector> projector_;
+  Holds holds_;
   std::vector<char> at_rim_;                    ///< by vertex of a label
   std::vector<std::uint32_t> vertex_of_label_;  ///< 0xffffffff: none, its piece of surface is dust
   double edge_ = 0;

@@ -28,6 +28,8 @@ std::string report_json(const Report& r) {
   json["thickness_apart"] = r.thickness_apart;
   json["sheets"] = r.sheets;
   json["cuts"] = r.cuts;
+  json["crease_vertices"] = r.crease_vertices;
+  json["crease_length"] = r.crease_length;
   json["inserted_seeds"] = r.inserted_seeds;
   json["regularization_rounds"] = r.regularization_rounds;
   json["cycle_shares"] = r.cycle_shares;

@@ -9,10 +9,11 @@
 namespace evenmesh {
 namespace {
 
-constexpr double worth_fitting = 0.15;   ///< of the edge length
-constexpr double least_score = 0.913;    ///< Q ≥ 0.639, angles ≥ 34.2°
-constexpr double most_lift = 0.2;        ///< of the edge length
-constexpr double among_the_worst = 0.8;  ///< of the largest deviation: what a round looks at
+constexpr double worth_fitting = 0.15;           ///< of the edge length
+constexpr double least_score = 0.913;            ///< Q ≥ 0.639, angles ≥ 34.2°
+constexpr double least_cosine_at_creases = 0.7;  ///< of a triangle's turn: not from one side of a crease to the other
+constexpr double most_lift = 0.2;                ///< of the edge length
+constexpr double among_the_worst = 0.8;          ///< of the largest deviation: what a round looks at
 constexpr int most_rounds = 16;
 constexpr int most_rounds_inexact = 4;  ///< on samples off the surface: later rounds only cost quality
 constexpr int most_shakes = 2;          ///< rounds around the worst where nothing helps there
@@ -93,7 +94,8 @@ class CellSamples {
 /// The mesh, and how far each cell's samples lie from it.
 class Fit {
  public:
-  Fit(Mesh& m, const CellSamples& c, const Projector* p) : mesh(m), cells(c), projector(p), rings(m) {
+  Fit(Mesh& m, const CellSamples& c, const Projector* p, const Holds& h)
+      : mesh(m), cells(c), projector(p), holds(h), rings(m) {
     deviation.assign(m.vertices.size(), 0), stale.assign(m.vertices.size(), 1), hopeless.assign(m.vertices.size(), 0);
   }
 
@@ -172,6 +174,7 @@ class Fit {
   Mesh& mesh;
   const CellSamples& cells;
   const Projector* projector;
+  const Holds& holds;
   const VertexRings rings;
   std::vector<double> deviation;  ///< squared, by vertex
   std::vector<char> stale;        ///< deviation may be wrong
@@ -195,6 +198,7 @@ class Attempt {
   bool reach() {
     if (fit_.cells.of(v_).empty()) return false;
     std::vector<std::uint32_t> movers = fit_.vertices_around(v_, 1);
+    std::erase_if(movers, [&](std::uint32_t w) { return fit_.holds.vertex(w); });
     std::sort(movers.begin(), movers.end(), [&](auto p, auto q) {
       const double dp = squared_norm(mesh_.vertices[p] - tip_), dq = squared_norm(mesh_.vertices[q] - tip_);
       return dp != dq ? dp < dq : p < q;
@@ -217,6 +221,8 @@ class Attempt {
       if (const double d = squared_norm(tip_ - q); d < distance) distance = d, nearest = t, foot = q;
     }
     const Triangle corners = mesh_.triangles[nearest];
+    for (const std::uint32_t c : corners)
+      if (fit_.holds.vertex(c)) return false;
     const double edge = rings_.edge_length(v_);
     region_.clear();
     for (const std::uint32_t c : corners)
@@ -273,9 +279,10 @@ class Attempt {
     return false;
   }
   bool triangles_are_good() const {
+    const double least = fit_.holds.chain.empty() ? 0 : least_cosine_at_creases;
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       const Triangle& t = mesh_.triangles[triangles_[i]];
-      if (rings_.score(t) < floor_ || dot(rings_.normal_of(t), normals_[i]) <= 0) return false;
+      if (rings_.score(t) < floor_ || dot(rings_.normal_of(t), normals_[i]) <= least) return false;
     }
     return true;
   }
@@ -296,7 +303,7 @@ class Attempt {
 
   /// Half way to the mean of the neighbours, along the surface, if that makes the worst triangle around w better.
   bool give_way(std::uint32_t w) {
-    if (rings_.on_boundary(w)) return false;
+    if (rings_.on_boundary(w) || fit_.holds.vertex(w)) return false;
     Vec3& position = mesh_.vertices[w];
     const Vec3 original = position;
     rings_.normals(w, ring_normals_);
@@ -345,10 +352,10 @@ std::vector<std::uint32_t> take_independent(const Fit& fit, std::vector<std::uin
 }  // namespace
 
 std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
-                         const Projector* projector, double sample_error, Run& run) {
+                         const Projector* projector, double sample_error, Run& run, const Holds& holds) {
   CellSamples cells(samples, vertex_of_sample, mesh.vertices.size(), sample_error > 0 ? projector : nullptr,
                     sample_error, run);
-  Fit fit(mesh, cells, projector);
+  Fit fit(mesh, cells, projector, holds);
   fit.measure_deviations(run);
   const auto far = fit.far_vertices(0);
   cells.take_all_of(far);

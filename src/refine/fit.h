@@ -6,6 +6,7 @@
 
 #include "evenmesh/mesh.h"
 #include "evenmesh/run.h"
+#include "refine/holds.h"
 #include "refine/projector.h"
 #include "sample/sample_set.h"
 
@@ -23,6 +24,6 @@ namespace evenmesh {
 /// Guarantee: same bits for any number of threads. Cost: about 30 ns per sample, and a millisecond for every place
 /// tried. Returns the number of places that came nearer.
 std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
-                         const Projector* projector, double sample_error, Run& run);
+                         const Projector* projector, double sample_error, Run& run, const Holds& holds = {});
 
 }  // namespace evenmesh

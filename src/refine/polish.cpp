@@ -7,17 +7,17 @@ namespace {
 
 constexpr int most_rounds = 12;
 
-std::vector<std::uint32_t> vertices_of_bad_triangles(const Mesh& mesh, const VertexRings& rings) {
+std::vector<std::uint32_t> vertices_of_bad_triangles(const Mesh& mesh, const VertexRings& rings, const Holds& holds) {
   std::vector<char> bad(mesh.vertices.size(), 0);
   for (const Triangle& t : mesh.triangles)
     if (rings.score(t) < 1) bad[t[0]] = bad[t[1]] = bad[t[2]] = 1;
   std::vector<std::uint32_t> list;
   for (std::uint32_t v = 0; v < bad.size(); ++v)
-    if (bad[v] && !rings.on_boundary(v)) list.push_back(v);
+    if (bad[v] && !rings.on_boundary(v) && !holds.at_corner(v)) list.push_back(v);
   return list;
 }
 
-bool improve(Mesh& mesh, const VertexRings& rings, const Projector* projector, std::uint32_t v) {
+bool improve(Mesh& mesh, const VertexRings& rings, const Projector* projector, const Holds& holds, std::uint32_t v) {
   Vec3& position = mesh.vertices[v];
   std::vector<Vec3> normals;
   rings.normals(v, normals);
@@ -30,7 +30,7 @@ bool improve(Mesh& mesh, const VertexRings& rings, const Projector* projector, s
     const Vec3 from = best_position;
     for (int eighth = 0; eighth < 8; ++eighth) {
       const Vec3 trial = from + plane.step(eighth, step * edge);
-      position = projector ? projector->project(trial, 0.3 * edge) : trial;
+      position = holds.vertex(v) ? holds.slide(v, trial) : projector ? projector->project(trial, 0.3 * edge) : trial;
       const double worst = rings.worst_score(v, normals, best);
       if (worst > best + 1e-6) best = worst, best_position = position;
     }
@@ -41,13 +41,14 @@ bool improve(Mesh& mesh, const VertexRings& rings, const Projector* projector, s
 
 }  // namespace
 
-std::size_t polish(Mesh& mesh, const Projector* projector, Run& run) {
+std::size_t polish(Mesh& mesh, const Projector* projector, Run& run, const Holds& holds) {
   const VertexRings rings(mesh);
   std::size_t moves = 0;
   for (int round = 0; round < most_rounds; ++round) {
     run.throw_if_cancelled();
     const std::size_t before = moves;
-    for (const std::uint32_t v : vertices_of_bad_triangles(mesh, rings)) moves += improve(mesh, rings, projector, v);
+    for (const std::uint32_t v : vertices_of_bad_triangles(mesh, rings, holds))
+      moves += improve(mesh, rings, projector, holds, v);
     if (moves == before) break;
   }
   return moves;

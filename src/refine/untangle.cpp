@@ -67,7 +67,7 @@ struct Patch {
 
 /// The knot around pairs[first]: its pairs are those that share vertices, one ring included, with others of it; they
 /// are taken off.
-Patch take_knot(const Mesh& mesh, Pairs& pairs) {
+Patch take_knot(const Mesh& mesh, Pairs& pairs, const Holds& holds) {
   std::vector<char> in(mesh.vertices.size(), 0);
   Pairs knot{pairs.front()};
   pairs.erase(pairs.begin());
@@ -101,7 +101,7 @@ Patch take_knot(const Mesh& mesh, Pairs& pairs) {
         index[v] = static_cast<std::uint32_t>(patch.vertices.size());
         patch.vertices.push_back(v);
         patch.mesh.vertices.push_back(mesh.vertices[v]);
-        patch.movable.push_back(in[v]);
+        patch.movable.push_back(in[v] && !holds.vertex(v));
       }
       local[c] = index[v];
     }
@@ -131,11 +131,12 @@ bool loosen(Patch& patch, const Projector* projector, const IntersectionFinder& 
 }
 
 /// Knot by knot, each with what helps there.
-void loosen_knots(Mesh& mesh, Pairs pairs, const Projector* projector, const IntersectionFinder& find, Run& run) {
+void loosen_knots(Mesh& mesh, Pairs pairs, const Projector* projector, const IntersectionFinder& find,
+                  const Holds& holds, Run& run) {
   constexpr int most_knots = 200;
   for (int knot = 0; knot < most_knots && !pairs.empty(); ++knot) {
     run.throw_if_cancelled();
-    Patch patch = take_knot(mesh, pairs);
+    Patch patch = take_knot(mesh, pairs, holds);
     if (!loosen(patch, projector, find)) continue;
     for (std::size_t v = 0; v < patch.vertices.size(); ++v)
       if (patch.movable[v]) mesh.vertices[patch.vertices[v]] = patch.mesh.vertices[v];
@@ -144,7 +145,8 @@ void loosen_knots(Mesh& mesh, Pairs pairs, const Projector* projector, const Int
 
 }  // namespace
 
-std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run) {
+std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run,
+                     const Holds& holds) {
   constexpr int rounds = 12, knot_rounds = 3;
   auto pairs = find(mesh);
   Mesh best = mesh;
@@ -152,8 +154,10 @@ std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionF
   for (int round = 0; round < rounds && !pairs.empty(); ++round) {
     run.throw_if_cancelled();
     // First along the surface; where that does not help, freely: a smoother surface does not run through itself.
-    smooth(mesh, region(mesh, pairs, round / 4), round % 4 < 2 ? projector : nullptr);
-    flip_to_delaunay(mesh);
+    std::vector<char> marked = region(mesh, pairs, round / 4);
+    for (std::uint32_t v = 0; v < marked.size(); ++v) marked[v] = marked[v] && !holds.vertex(v);
+    smooth(mesh, marked, round % 4 < 2 ? projector : nullptr);
+    flip_to_delaunay(mesh, holds);
     pairs = find(mesh);
     if (pairs.size() < fewest) fewest = pairs.size(), best = mesh;
   }
@@ -161,7 +165,7 @@ std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionF
   if (fewest == 0) return 0;
   best = mesh;
   for (int round = 0; round < knot_rounds && fewest > 0; ++round) {
-    loosen_knots(mesh, find(mesh), projector, find, run);
+    loosen_knots(mesh, find(mesh), projector, find, holds, run);
     const std::size_t left = find(mesh).size();
     if (left >= fewest) break;
     fewest = left, best = mesh;

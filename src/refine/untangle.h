@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "evenmesh/mesh.h"
+#include "refine/holds.h"
 #include "refine/projector.h"
 
 namespace evenmesh {
@@ -18,6 +19,7 @@ using IntersectionFinder = std::function<std::vector<std::pair<std::uint32_t, st
 /// helps. Returns the number of pairs that are left. Cost: one search, and one more for every round that was needed (at
 /// most 12).
 /// @pre  two-manifold
-std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run);
+std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run,
+                     const Holds& holds = {});
 
 }  // namespace evenmesh

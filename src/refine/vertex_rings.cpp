@@ -72,6 +72,15 @@ double VertexRings::worst_score(std::uint32_t v, std::span<const Vec3> normals_b
   return worst;
 }
 
+std::vector<std::uint32_t> triangles_below(const Mesh& mesh, double least) {
+  std::vector<std::uint32_t> list;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& c = mesh.triangles[t];
+    if (VertexRings::score(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]) < least) list.push_back(t);
+  }
+  return list;
+}
+
 double VertexRings::score(const Vec3& a, const Vec3& b, const Vec3& c) {
   return score_of(norm(b - a), norm(c - b), norm(a - c), norm(cross(b - a, c - a)));
 }

@@ -49,6 +49,9 @@ class VertexRings {
   std::vector<std::uint32_t> start_, around_, beside_start_, beside_;
 };
 
+/// Triangles whose score is below `least`, ascending.
+std::vector<std::uint32_t> triangles_below(const Mesh& mesh, double least);
+
 /// Two directions that span the plane across `normal`.
 struct TangentPlane {
   Vec3 u, v;

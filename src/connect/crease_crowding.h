@@ -1,0 +1,12 @@
+#pragma once
+/// Creases that lie too near to each other.
+
+#include "connect/creases.h"
+
+namespace evenmesh {
+
+/// Leaves out chains of which a third runs beside other chains, or beside another part of themselves, nearer than
+/// `reach` (model units), as around a thin plate; and the corners that are left without a chain.
+Creases without_crowded(const Creases& creases, double reach);
+
+}  // namespace evenmesh

@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "connect/connect_testing.h"
+#include "connect/crease_seeds.h"
+#include "cvt/starts.h"
+#include "geometry/primitives.h"
+#include "shape/expression_field.h"
+
+namespace evenmesh {
+namespace {
+
+SampleSet sampled_expression(const std::string& expression, double half) {
+  Run run(2);
+  const Shape shape = shape_from_expression(expression, {}, {{-half, -half, -half}, {half, half, half}});
+  return sample_shape(shape, make_grid(shape.bounds, 64), run);
+}
+
+Creases creases_of(const SampleSet& samples, double edge, unsigned threads = 2) {
+  Run run(threads);
+  return find_creases(samples, 40, edge, run);
+}
+
+TEST(Creases, OfACubeAreItsTwelveEdges) {
+  const SampleSet samples = sampled_gallery("cube", 64);
+  const Creases creases = creases_of(samples, 0.3);
+  EXPECT_EQ(creases.corners.size(), 8u);
+  EXPECT_EQ(creases.chains.size(), 12u);
+  for (const Vec3& c : creases.corners)
+    for (int a = 0; a < 3; ++a) EXPECT_NEAR(std::abs(c[a]), 1, 1e-4);
+  for (const CreaseChain& chain : creases.chains) {
+    EXPECT_NEAR(chain.length(), 2, 1e-3);
+    EXPECT_EQ(chain.points.front(), creases.corners[chain.from]);
+    EXPECT_EQ(chain.points.back(), creases.corners[chain.to]);
+    for (const Vec3& p : chain.points)
+      EXPECT_EQ((std::abs(std::abs(p.x) - 1) < 1e-4) + (std::abs(std::abs(p.y) - 1) < 1e-4) +
+                        (std::abs(std::abs(p.z) - 1) < 1e-4) >=
+                    2,
+                true);
+  }
+}
+
+TEST(Creases, OfACylinderAreTwoClosedCircles) {
+  const Creases creases = creases_of(sampled_expression("max(x^2+y^2-1, abs(z)-0.7)", 1.1), 0.2);
+  EXPECT_TRUE(creases.corners.empty());
+  ASSERT_EQ(creases.chains.size(), 2u);
+  for (const CreaseChain& chain : creases.chains) {
+    EXPECT_EQ(chain.from, CreaseChain::none);
+    EXPECT_EQ(chain.points.front(), chain.points.back());
+    EXPECT_NEAR(chain.length(), 2 * std::numbers::pi, 0.02);
+    for (const Vec3& p : chain.points) EXPECT_NEAR(std::hypot(p.x, p.y), 1, 1e-3);
+  }
+}
+
+TEST(Creases, SmoothAndRoundedSurfacesHaveNone) {
+  for (const char* name : {"sphere", "torus", "rounded-box", "octic", "tangle"})
+    EXPECT_TRUE(creases_of(sampled_gallery(name, 96), 0.1).chains.empty()) << name;
+}
+
+TEST(Creases, OfAPrismMeetAtItsCorners) {
+  // A prism over a triangle.
+  const Creases creases = creases_of(sampled_expression("max(max(x, y) - 0.8, -x - y - 0.4, abs(z) - 0.6)", 1.5), 0.2);
+  EXPECT_EQ(creases.corners.size(), 6u);
+  EXPECT_EQ(creases.chains.size(), 9u);
+}
+
+TEST(Creases, AreTheSameForAnyNumberOfThreads) {
+  const SampleSet samples = sampled_gallery("schwarz-p", 80);
+  const Creases one = creases_of(samples, 0.1, 1), two = creases_of(samples, 0.1, 2);
+  EXPECT_EQ(one.corners, two.corners);
+  ASSERT_EQ(one.chains.size(), two.chains.size());
+  EXPECT_GT(one.chains.size(), 0u);
+  for (std::size_t c = 0; c < one.chains.size(); ++c) EXPECT_EQ(one.chains[c].points, two.chains[c].points);
+}
+
+TEST(CreaseSeeds, AreEvenlySpacedAndNeighboursInTheDual) {
+  const SampleSet samples = sampled_gallery("cube", 64);
+  const Creases creases = creases_of(samples, 0.26);
+  const CreaseSeeds seeds = place_crease_seeds(creases, 0.26);
+  EXPECT_EQ(seeds.places.size(), 8u + 12 * 7);
+  EXPECT_EQ(seeds.edges.size(), 12u * 8);
+  for (const auto& [a, b] : seeds.edges) EXPECT_NEAR(norm(seeds.places[a] - seeds.places[b]), 0.25, 1e-3);
+
+  // Whoever else owns the surface: along the creases the crease's own seeds do.
+  const std::vector<Vec3> others = blue_noise_start(samples, 400, 1);
+  std::vector<Vec3> all = held_and_others(seeds.places, others, 0, 0.15);
+  const Vec3 intruder{1, 0.99, 0.125};
+  all.push_back(intruder);
+  evenmesh::Run run(2);
+  std::vector<std::uint32_t> labels = nearest_labels(samples, all);
+  hold_labels(samples, creases, seeds, labels, run);
+  const LabelComplex complex = connect_labels(samples, labels, all, run);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const Triangle& t : complex.triangles)
+    for (int c = 0; c < 3; ++c) edges.insert(std::minmax(t[c], t[(c + 1) % 3]));
+  for (const auto& [a, b] : seeds.edges) EXPECT_TRUE(edges.contains(std::minmax(a, b))) << a << " – " << b;
+}
+
+}  // namespace
+}  // namespace evenmesh

@@ -1,0 +1,83 @@
+/// Sharp edges of solids: the mesh has edges there.
+
+#include "pipeline/pipeline_testing.h"
+
+namespace evenmesh {
+namespace {
+
+double farthest_crease(const Mesh& mesh, const Mesh& reference) {
+  const MeshDistance d = compare_meshes(mesh, reference, {.samples = 20'000});
+  EXPECT_GT(d.crease_length, 0);
+  return d.crease_max / d.edge_length_avg;
+}
+
+TEST(Features, ACubeIsACube) {
+  for (const std::size_t vertices : {500u, 5000u}) {
+    const MeshResult result = meshed(gallery_shape("cube"), {.vertices = vertices});
+    expect_good_mesh(result);
+    expect_count(result, vertices);
+    EXPECT_EQ(result.report.quality.euler, 2);
+    EXPECT_NEAR(result.report.quality.volume, 8, 8e-4);
+    EXPECT_NEAR(result.report.quality.area, 24, 24e-4);
+    EXPECT_LT(farthest_crease(result.mesh, make_box()), 1e-3);
+    EXPECT_GT(result.report.quality.q_avg, 0.88);
+    for (const Vec3& v : result.mesh.vertices)
+      EXPECT_NEAR(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}), 1, 1e-4);
+  }
+}
+
+TEST(Features, TriangleMeshesAndFieldsAreTreatedAlike) {
+  for (const Shape& shape : {shape_from_mesh(make_tetrahedron()), shape_from_mesh(make_box({1, 0.5, 0.3}))}) {
+    const MeshResult result = meshed(shape, {.vertices = 1000});
+    expect_good_mesh(result);
+    const double volume = measure_quality(*shape.mesh()).volume;
+    EXPECT_NEAR(result.report.quality.volume, volume, 1e-4 * volume);
+    EXPECT_LT(farthest_crease(result.mesh, *shape.mesh()), 0.01);
+  }
+}
+
+TEST(Features, BooleanEdgesAreKept) {
+  const Box bounds{{-1.2, -1.2, -1.2}, {1.2, 1.2, 1.2}};
+  const Shape cup =
+      shape_from_expression("max(x^2 + y^2 - 1, abs(z) - 1, -max(x^2 + y^2 - 0.5, -0.5 - z))", {}, bounds);
+  const MeshResult result = meshed(cup, {.vertices = 3000});
+  expect_good_mesh(result);
+  EXPECT_EQ(result.report.quality.euler, 2);
+  const double volume = std::numbers::pi * (2 - 0.5 * 1.5);
+  EXPECT_NEAR(result.report.quality.volume, volume, 5e-3 * volume);
+  // Four circles: the base, the rim outside and inside, the inner floor.
+  EXPECT_NEAR(result.report.crease_length, 2 * std::numbers::pi * (2 + 2 * std::sqrt(0.5)), 0.05);
+}
+
+TEST(Features, SmoothShapesDoNotChange) {
+  for (const char* name : {"torus", "rounded-box", "tangle"}) {
+    const MeshOptions off{.vertices = 700, .crease_angle = std::nullopt}, on{.vertices = 700};
+    EXPECT_TRUE(same_mesh(meshed(gallery_shape(name), off).mesh, meshed(gallery_shape(name), on).mesh)) << name;
+  }
+}
+
+TEST(Features, TheAngleDecides) {
+  // A prism whose edges turn by 60°.
+  const Shape prism = shape_from_expression("max(abs(x), abs(x) / 2 + abs(y) * sqrt(3) / 2, abs(z)) - 1", {},
+                                            Box{{-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}});
+  const double top = 2 * 6 * 2 / std::sqrt(3.0), sides = 6 * 2;
+  EXPECT_NEAR(meshed(prism, {.vertices = 800, .crease_angle = 40}).report.crease_length, top + sides, 0.05);
+  EXPECT_NEAR(meshed(prism, {.vertices = 800, .crease_angle = 75}).report.crease_length, top, 0.1);
+  EXPECT_EQ(meshed(prism, {.vertices = 800, .crease_angle = 100}).report.crease_length, 0);
+}
+
+TEST(Features, SameBytesForAnyNumberOfThreads) {
+  const Shape shape = gallery_shape("schwarz-p");
+  const MeshResult one = meshed(shape, {.vertices = 2000}, 1);
+  EXPECT_GT(one.report.crease_vertices, 0u);
+  for (const unsigned threads : {2u, 7u})
+    EXPECT_TRUE(same_mesh(one.mesh, meshed(shape, {.vertices = 2000}, threads).mesh));
+}
+
+TEST(Features, WrongAnglesAreRefused) {
+  for (const double angle : {0.0, -5.0, 180.0, std::nan("")})
+    EXPECT_THROW(meshed(gallery_shape("cube"), {.vertices = 100, .crease_angle = angle}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace evenmesh
