@@ -13,6 +13,7 @@
 #include "sample/bridge_points.h"
 #include "sample/density.h"
 #include "sample/filled_gaps.h"
+#include "sample/sample.h"
 
 namespace evenmesh {
 namespace {
@@ -94,8 +95,10 @@ ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& rep
 }
 
 SiteVoxels voxelize(const Shape& shape, const ShellPlan& plan, Run& run) {
-  const VoxelGrid grid =
-      make_voxel_grid(shape.bounds, plan.resolution, std::max(plan.thickness, plan.bridge) + plan.thickness + 2);
+  const unsigned margin = std::max(plan.thickness, plan.bridge) + plan.thickness + 2;
+  if (shape.compound())
+    return voxelize_samples(sample_shape(shape, make_grid(shape.bounds, plan.resolution), run), margin, run);
+  const VoxelGrid grid = make_voxel_grid(shape.bounds, plan.resolution, margin);
   if (const Mesh* mesh = shape.mesh()) return voxelize_mesh(*mesh, grid, run);
   if (const PointCloud* points = shape.points()) {
     SiteVoxels sparse = voxelize_points(points->points, points->normals, grid, run);

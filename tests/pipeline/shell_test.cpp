@@ -1,3 +1,4 @@
+#include "evenmesh/solid.h"
 #include "geometry/closest_point.h"
 #include "pipeline/shell_testing.h"
 
@@ -155,6 +156,17 @@ TEST(ShellMethod, GivesTheShellWhenAsked) {
     EXPECT_LT(cut, result.shell.voxels.size() / 8);
   }
   EXPECT_TRUE(meshed(shape_from_mesh(make_icosphere(3)), by_shell(100, 30)).shell.voxels.empty());
+}
+
+TEST(ShellMethod, SolidsMadeOfOthersAreMeshedToo) {
+  const Shape ring = subtract(gallery_shape("torus"), {shape_from_expression("z")});
+  MeshOptions options = by_shell(400);
+  for (const bool wrap : {false, true}) {
+    options.wrap = wrap;
+    const MeshResult result = meshed(ring, options);
+    EXPECT_TRUE(result.report.quality.closed());
+    EXPECT_EQ(result.report.quality.euler, 0);
+  }
 }
 
 TEST(ShellMethod, ThinWallsHideNothing) {
