@@ -9,6 +9,7 @@
 #include "command.h"
 #include "evenmesh/io.h"
 #include "evenmesh/render.h"
+#include "evenmesh/solid.h"
 #include "interrupt.h"
 #include "output.h"
 #include "summary.h"
@@ -106,6 +107,7 @@ Json options_json(const MeshingArguments& a, const Operation& operation, unsigne
   given("resolution", a.resolution);
   given("thickness", a.thickness);
   given("outliers", a.outliers);
+  if (!a.regularize.empty()) json["regularize"] = a.regularize;
   given("bounds", a.bounds);
   given("quality", a.quality);
   given("method", a.method);
@@ -135,7 +137,8 @@ std::string run_json(const Report& report, const MeshingArguments& a, const Oper
 /// What the checks of the command line leave to do.
 struct Plan {
   MeshOptions options;
-  std::optional<double> outliers;  ///< standard deviations
+  std::optional<double> outliers;    ///< standard deviations
+  std::optional<double> regularize;  ///< radius
   MeshOutput output;
   unsigned threads = 0;
   Talk talk = Talk::normal;
@@ -148,6 +151,11 @@ Plan check(MeshingArguments& a, const Operation& operation) {
   Plan plan;
   plan.options = mesh_options(a);
   if (!a.outliers.empty()) plan.outliers = real_number("--outliers", a.outliers, 0, 100);
+  if (!a.regularize.empty()) {
+    choice("--regularize", a.regularize[0], {"global"});
+    plan.regularize = real_number("--regularize global", a.regularize[1]);
+    if (!(*plan.regularize > 0)) throw InvalidInput("--regularize global takes a radius above 0");
+  }
   plan.threads = static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024));
   choice("--progress", a.progress, {"auto", "on", "off"});
   if (a.quiet && a.verbose) throw InvalidInput("-q and -v contradict each other; give one of them");
@@ -202,6 +210,7 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
     std::vector<Shape> inputs = read_shapes(a.input, plan.options.bounds.value_or(Box{}), run);
     Shape shape = operation.combine ? operation.combine(std::move(inputs)) : std::move(inputs.at(0));
     if (plan.outliers) shape = without_outliers(shape, *plan.outliers, plan.talk, run);
+    if (plan.regularize) shape = opening(closing(std::move(shape), *plan.regularize), *plan.regularize);
     MeshOptions options = plan.options;
     if (operation.prepare) operation.prepare(shape, options, plan.talk);
     reading = seconds_since(start);

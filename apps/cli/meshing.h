@@ -24,6 +24,7 @@ struct MeshingArguments {
   std::string backend = "cpu", threads = "0", progress = "auto";
   std::string report, json;
   std::string thickness, outliers, dump_shell;
+  std::vector<std::string> regularize;  ///< "global", radius
   std::string max_cycle;
   std::string error, dump_dexels, entry;  ///< documented, not available yet
   bool quiet = false, verbose = false;

@@ -25,6 +25,12 @@ void add_what(CLI::App& app, MeshingArguments& a) {
   option("--topology", a.topology, "RULE",
          "keep: add vertices where the topology needs them; simplify: keep the number of\nvertices and fill small "
          "tunnels and gaps of the solid instead; default keep");
+  app.add_option("--regularize", a.regularize,
+                 "first close and open the solid by balls of radius R, model units: what is\nnarrower than 2 R is "
+                 "filled or cut off; default: not")
+      ->type_name("global R")
+      ->expected(2)
+      ->group(group);
   option("--features", a.features, "ANGLE",
          "sharp edges: where the surface turns by more than ANGLE degrees, 0 to 180,\nthe mesh has an edge: auto = 40, "
          "or off; solids only; default auto");

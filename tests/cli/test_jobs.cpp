@@ -245,6 +245,20 @@ TEST_F(Jobs, DexelsGoOutAndComeIn) {
               Json::parse(info("b.ply")).at("volume").get<double>() / 2, 0.05);
 }
 
+TEST_F(Jobs, RegularizesTheSolidFirstOnRequest) {
+  // Two balls a gap of 0.1 apart.
+  Words words{"mesh", "-e", "min((x-0.55)^2, (x+0.55)^2)+y^2+z^2-0.25", "-n", "200", "-o", "m.ply", "-q"};
+  ASSERT_EQ(run(words).status, 0);
+  EXPECT_EQ(Json::parse(info("m.ply")).at("components"), 2);
+  words.insert(words.end(), {"--regularize", "global", "0.15"});
+  ASSERT_EQ(run(words).status, 0);
+  const Json figures = Json::parse(info("m.ply"));
+  expect_sound(figures);
+  EXPECT_EQ(figures.at("components"), 1);
+  words.back() = "-1";
+  EXPECT_EQ(run(words).status, 2);
+}
+
 TEST_F(Jobs, RepairsWhatIsBroken) {
   // A tetrahedron of loose triangles, one of them turned, one missing a corner of its own.
   write("loose.stl",
