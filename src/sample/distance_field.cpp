@@ -98,7 +98,7 @@ class DistanceLattice {
       double bound = std::abs(level_) + 3 * step_;
       for (std::size_t n = begin; n < end; ++n) {
         const auto at = morton_decode(keys[n]);
-        const Vec3 p = origin_ + step_ * Vec3(at[0], at[1], at[2]);
+        const Vec3 p = origin_ + step_ * Vec3{double(at[0]), double(at[1]), double(at[2])};
         node_[n] = surface_.find(p, n == begin ? bound : bound + norm(p - last) * (1 + 1e-6) + 1e-9 * step_);
         bound = std::abs(node_[n].distance), last = p;
       }
@@ -138,7 +138,7 @@ class DistanceLattice {
     std::vector<char> keep(cells.size());
     parallel_for(run, cells.size(), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const Vec3 lo = origin_ + step_ * Vec3(cells[i][0], cells[i][1], cells[i][2]);
+        const Vec3 lo = origin_ + step_ * Vec3{double(cells[i][0]), double(cells[i][1]), double(cells[i][2])};
         if (lo.x > box.hi.x || lo.y > box.hi.y || lo.z > box.hi.z) continue;
         keep[i] = surface_.side_of(lo + 0.5 * side * step_ * Vec3{1, 1, 1}, level_, (0.87 * side + 0.2) * step_) == 0;
       }
