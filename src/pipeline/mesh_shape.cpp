@@ -369,6 +369,8 @@ class Job {
     if (report_.self_intersections > 0)
       notice(true, fmt::format("{} pairs of triangles intersect each other; ask for more vertices",
                                report_.self_intersections));
+    if (q.degenerate_faces > 0)
+      notice(true, fmt::format("{} triangles have no area; ask for more vertices", q.degenerate_faces));
     const double asked = static_cast<double>(report_.seeds_asked), made = static_cast<double>(q.vertices);
     if (std::abs(made - asked) > 0.005 * asked)
       notice(false, fmt::format("{:.0f} vertices instead of {:.0f}: the topology {}", made, asked,

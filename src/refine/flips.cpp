@@ -48,7 +48,11 @@ class Flipper {
     if (c == d || holds_.edge(a, b)) return false;
     const Vec3 &pa = position(a), &pb = position(b), &pc = position(c), &pd = position(d);
     if (cotangent_at(pc, pa, pb) + cotangent_at(pd, pa, pb) >= -1e-9) return false;
-    const Vec3 old1 = normalized(cross(pb - pa, pc - pa)), old2 = normalized(cross(pa - pb, pd - pb));
+    const Vec3 cross1 = cross(pb - pa, pc - pa), cross2 = cross(pa - pb, pd - pb);
+    // A triangle without area, as three vertices on a straight crease make, has no say in where the others face.
+    const double least = 1e-9 * squared_norm(pb - pa);
+    const Vec3 old1 = normalized(norm(cross1) > least ? cross1 : cross2);
+    const Vec3 old2 = normalized(norm(cross2) > least ? cross2 : cross1);
     const Vec3 new1 = normalized(cross(pd - pc, pa - pc)) * -1.0, new2 = normalized(cross(pc - pd, pb - pd)) * -1.0;
     for (const Vec3& n : {new1, new2})
       if (dot(n, old1) < 0.5 || dot(n, old2) < 0.5) return false;

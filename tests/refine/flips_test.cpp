@@ -72,5 +72,16 @@ TEST(Flips, SurviveTrianglesWithoutArea) {
   expect_closed_manifold(mesh);
 }
 
+TEST(Flips, ATriangleWithoutAreaIsFlippedAway) {
+  // A square pyramid with a vertex in the middle of one edge of its base, where a flat triangle hangs.
+  Mesh mesh{{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 1}, {1, 0, 0}},
+            {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {5, 0, 2}, {5, 2, 1}, {0, 3, 2}}};
+  EXPECT_GT(flip_to_delaunay(mesh), 0u);
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    EXPECT_GT(norm(cross(b - a, c - a)), 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace evenmesh
