@@ -37,31 +37,30 @@ fs::path Workshop::file(const std::string& name) const {
   return path;
 }
 
-Shape Workshop::mesh_file(const std::string& name) {
+template <typename Read>
+Shape Workshop::once(std::map<fs::path, Shape>& known, const std::string& name, const Read& read) {
   const fs::path path = file(name);
-  auto found = meshes_.find(path);
-  if (found == meshes_.end()) {
-    found = meshes_.emplace(path, shape_from_mesh(read_mesh(path, run_), path.filename().string())).first;
-  }
+  auto found = known.find(path);
+  if (found == known.end()) found = known.emplace(path, read(path, path.filename().string())).first;
   return found->second;
+}
+
+Shape Workshop::mesh_file(const std::string& name) {
+  return once(meshes_, name, [&](const fs::path& path, const std::string& title) {
+    return shape_from_mesh(read_mesh(path, run_), title);
+  });
 }
 
 Shape Workshop::point_file(const std::string& name) {
-  const fs::path path = file(name);
-  auto found = points_.find(path);
-  if (found == points_.end()) {
-    found = points_.emplace(path, shape_from_points(read_points(path, run_), path.filename().string())).first;
-  }
-  return found->second;
+  return once(points_, name, [&](const fs::path& path, const std::string& title) {
+    return shape_from_points(read_points(path, run_), title);
+  });
 }
 
 Shape Workshop::dexel_file(const std::string& name) {
-  const fs::path path = file(name);
-  auto found = dexels_.find(path);
-  if (found == dexels_.end()) {
-    found = dexels_.emplace(path, shape_from_dexels(read_dexels(path, run_), path.filename().string())).first;
-  }
-  return found->second;
+  return once(dexels_, name, [&](const fs::path& path, const std::string& title) {
+    return shape_from_dexels(read_dexels(path, run_), title);
+  });
 }
 
 Shape Workshop::placed(const Shape& shape, const Affine* placement) {

@@ -36,6 +36,9 @@ class Workshop {
 
  private:
   std::filesystem::path file(const std::string& name) const;
+  /// What read(path, title) makes of a file, the first time it is asked for.
+  template <typename Read>
+  Shape once(std::map<std::filesystem::path, Shape>& known, const std::string& name, const Read& read);
 
   std::filesystem::path folder_;
   std::uint64_t left_;
