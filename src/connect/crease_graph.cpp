@@ -53,6 +53,10 @@ struct HalfLink {
 struct BrickNodes {
   std::vector<CreaseNode> nodes;
   std::vector<HalfLink> links;  ///< nodes numbered within the brick
+  std::uint32_t loops = 0;      ///< creased or not
+
+  /// Even where several creases meet most of the surface around is smooth; on fractals most of it is not.
+  bool rough() const { return nodes.size() > 32 && 2 * nodes.size() > loops; }
 };
 
 class Finder {
@@ -64,6 +68,7 @@ class Finder {
         safe_step_(static_cast<int>(32767 * std::acos(weak) / (3 * std::numbers::sqrt2)) - 2) {}
 
   void visit(const CubeBrick& brick, const std::uint32_t* loop, int n, BrickNodes& found) const {
+    ++found.loops;
     const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
     bool smooth = true;
     for (int i = 0; i < n; ++i) smooth &= is_nearly_same(samples_.normal[loop[i]], samples_.normal[loop[after(i)]]);
@@ -135,6 +140,7 @@ CreaseGraph find_crease_graph(const SampleSet& samples, double sharp, double wea
   CreaseGraph graph;
   std::vector<HalfLink> halves;
   for (BrickNodes& found : of_brick) {
+    if (found.rough()) continue;
     const auto first = static_cast<std::uint32_t>(graph.nodes.size());
     graph.nodes.insert(graph.nodes.end(), found.nodes.begin(), found.nodes.end());
     for (const HalfLink& link : found.links) halves.push_back({link.key, first + link.node, link.sharp});
