@@ -70,131 +70,204 @@ class SurfaceDistance {
   std::optional<SurfaceQuery> query_;
 };
 
-/// Exact distances at the nodes of a lattice around one level, and what they say in between.
+/// Exact distances at the corners of an octree's cells around one level, and what they say in between.
 ///
-/// A query far from the surface looks at all triangles of a lens as wide as the way is long. Between nodes the distance
-/// is smooth: the mean of the interpolated distances and of the interpolated tangent planes is exact to second order.
-/// Where the nodes see different pieces of surface, it is asked for.
+/// A query far from the surface looks at all triangles of a lens as wide as the way is long. Between corners the
+/// distance is smooth: the mean of the interpolated distances and of the interpolated tangent planes is exact to second
+/// order. Where the corners see different pieces of surface, cells are split, and the smallest ones ask where they have
+/// to.
 class DistanceLattice {
  public:
-  DistanceLattice(const SurfaceDistance& surface, double level, double step, const Box& box, Run& run)
-      : surface_(surface), level_(level), step_(step), origin_(box.lo) {
-    std::uint32_t side = 1;  // in steps
-    while (side * step < box.longest_side()) side *= 2;
-    Cells cells{{0, 0, 0}};
-    for (keep_near_level(cells, side, box, run); side > 1; keep_near_level(cells, side, box, run))
-      side /= 2, split(cells, side);
-    std::vector<std::uint64_t> keys;
-    for (const auto& c : cells)
-      for (unsigned corner = 0; corner < 8; ++corner)
-        keys.push_back(morton_code(c[0] + (corner & 1), c[1] + (corner >> 1 & 1), c[2] + (corner >> 2)));
-    parallel_sort(run, keys);
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    node_.resize(keys.size());
-    index_.reserve(2 * keys.size());
-    for (std::uint32_t n = 0; n < keys.size(); ++n) index_.emplace(keys[n], n);
-    parallel_for(run, keys.size(), 64, [&](std::size_t begin, std::size_t end) {
-      Vec3 last;
-      double bound = std::abs(level_) + 3 * step_;
-      for (std::size_t n = begin; n < end; ++n) {
-        const auto at = morton_decode(keys[n]);
-        const Vec3 p = origin_ + step_ * Vec3{double(at[0]), double(at[1]), double(at[2])};
-        node_[n] = surface_.find(p, n == begin ? bound : bound + norm(p - last) * (1 + 1e-6) + 1e-9 * step_);
-        bound = std::abs(node_[n].distance), last = p;
-      }
-    });
+  /// @param step   side of the smallest cells, model units
+  /// @param levels  of cells above those
+  DistanceLattice(const SurfaceDistance& surface, double level, double step, int levels, const Box& box, Run& run)
+      : surface_(surface), level_(level), step_(step), levels_(levels), origin_(box.lo) {
+    int top = levels;
+    while (std::ldexp(step, top) < box.longest_side()) ++top;
+    top_ = top;
+    std::vector<Corner> cells{{0, 0, 0}};
+    for (int l = top; l >= 0 && !cells.empty(); --l) {
+      std::vector<Leaf> leaves = judge(cells, l, box, run);
+      if (l <= levels) look_at_corners(cells, l, leaves, run);
+      cells = settle(cells, l, leaves);
+    }
   }
 
-  /// One lattice cell's nodes; remembers the last, since points come in rows.
-  struct Cell {
-    std::array<std::int64_t, 3> at{-1, -1, -1};
-    std::array<const Nearest*, 8> node{};
-    bool known = false, smooth = false;
+  /// The leaf that holds a point; remembers the last, since points come in rows.
+  struct Place {
+    std::array<std::int64_t, 3> at{-1, -1, -1};  ///< in smallest cells
+    int level = -1;                              ///< −1: beyond the box
+    std::uint32_t leaf = 0;
   };
-  /// @returns nothing where the lattice does not reach: there the level is far away
-  std::optional<Nearest> find(const Vec3& p, Cell& cell) const {
+  Nearest find(const Vec3& p, Place& place) const {
     const Vec3 at = (p - origin_) / step_;
-    const std::array<std::int64_t, 3> corner{static_cast<std::int64_t>(std::floor(at.x)),
-                                             static_cast<std::int64_t>(std::floor(at.y)),
-                                             static_cast<std::int64_t>(std::floor(at.z))};
-    if (corner != cell.at) enter(corner, cell);
-    if (!cell.known) return std::nullopt;
-    return cell.smooth ? interpolated(p, at, cell) : nearest_of(p, cell);
+    if (const auto corner = floor_of(at); corner != place.at) enter(corner, place);
+    if (place.level < 0) return beyond(p);
+    const Leaf& leaf = leaves_[place.leaf];
+    if (leaf.kind == Kind::below || leaf.kind == Kind::above) return far_away(p, leaf.kind == Kind::below);
+    return leaf.kind == Kind::smooth ? interpolated(p, at, place, leaf) : nearest_of(p, place, leaf);
   }
 
  private:
-  using Cells = std::vector<std::array<std::uint32_t, 3>>;  ///< lower corners, in steps
+  using Corner = std::array<std::uint32_t, 3>;  ///< lower corner of a cell, in smallest cells
+  enum class Kind : char { below, above, smooth, rough, split };
+  struct Leaf {
+    Kind kind = Kind::split;
+    std::array<std::uint32_t, 8> node{};
+  };
 
-  static void split(Cells& cells, std::uint32_t half) {
-    Cells parts;
-    parts.reserve(8 * cells.size());
-    for (const auto& c : cells)
-      for (std::uint32_t part = 0; part < 8; ++part)
-        parts.push_back({c[0] + (part & 1) * half, c[1] + (part >> 1 & 1) * half, c[2] + (part >> 2) * half});
-    cells.swap(parts);
+  static std::array<std::int64_t, 3> floor_of(const Vec3& at) {
+    return {static_cast<std::int64_t>(std::floor(at.x)), static_cast<std::int64_t>(std::floor(at.y)),
+            static_cast<std::int64_t>(std::floor(at.z))};
   }
-  /// Those cells that may hold the level.
-  void keep_near_level(Cells& cells, std::uint32_t side, const Box& box, const Run& run) const {
-    std::vector<char> keep(cells.size());
+  static std::uint64_t key_of(const Corner& c) { return morton_code(c[0], c[1], c[2]); }
+  static std::uint64_t key_of(const Corner& c, int level) { return std::uint64_t(level) << 58 | key_of(c); }
+  static Corner corner_of(const Corner& c, unsigned k, std::uint32_t side) {
+    return {c[0] + (k & 1) * side, c[1] + (k >> 1 & 1) * side, c[2] + (k >> 2) * side};
+  }
+  Vec3 point(const Corner& c) const { return origin_ + step_ * Vec3{double(c[0]), double(c[1]), double(c[2])}; }
+
+  /// Which cells of one size cannot hold the level; the others are to be split.
+  std::vector<Leaf> judge(const std::vector<Corner>& cells, int l, const Box& box, const Run& run) const {
+    std::vector<Leaf> leaves(cells.size());
+    const double side = std::ldexp(step_, l);
     parallel_for(run, cells.size(), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const Vec3 lo = origin_ + step_ * Vec3{double(cells[i][0]), double(cells[i][1]), double(cells[i][2])};
-        if (lo.x > box.hi.x || lo.y > box.hi.y || lo.z > box.hi.z) continue;
-        keep[i] = surface_.side_of(lo + 0.5 * side * step_ * Vec3{1, 1, 1}, level_, (0.87 * side + 0.2) * step_) == 0;
+        const Vec3 lo = point(cells[i]);
+        if (lo.x > box.hi.x || lo.y > box.hi.y || lo.z > box.hi.z) {
+          leaves[i].kind = level_ < 0 ? Kind::above : Kind::below;  // never asked for
+          continue;
+        }
+        const int where = surface_.side_of(lo + 0.5 * side * Vec3{1, 1, 1}, level_, 0.87 * side + 0.2 * step_);
+        if (where != 0) leaves[i].kind = where < 0 ? Kind::below : Kind::above;
       }
     });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      if (keep[i]) cells[kept++] = cells[i];
-    cells.resize(kept);
+    return leaves;
   }
 
-  void enter(const std::array<std::int64_t, 3>& corner, Cell& cell) const {
-    cell.at = corner;
-    cell.known = false;
-    if (corner[0] < 0 || corner[1] < 0 || corner[2] < 0) return;
-    for (unsigned c = 0; c < 8; ++c) {
-      const auto found =
-          index_.find(morton_code(std::uint64_t(corner[0]) + (c & 1), std::uint64_t(corner[1]) + (c >> 1 & 1),
-                                  std::uint64_t(corner[2]) + (c >> 2)));
-      if (found == index_.end()) return;
-      cell.node[c] = &node_[found->second];
-    }
-    cell.known = true;
-    cell.smooth = std::all_of(cell.node.begin(), cell.node.end(),
-                              [&](const Nearest* n) { return dot(n->gradient, cell.node[0]->gradient) > same_way; });
+  /// Distances at the corners of the cells left; they are smooth, or rough if they cannot be split.
+  void look_at_corners(const std::vector<Corner>& cells, int l, std::vector<Leaf>& leaves, const Run& run) {
+    const std::uint32_t side = 1u << l;
+    std::vector<std::uint64_t> keys;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      for (unsigned k = 0; leaves[i].kind == Kind::split && k < 8; ++k)
+        if (const std::uint64_t key = key_of(corner_of(cells[i], k, side)); !node_of_.contains(key))
+          keys.push_back(key);
+    parallel_sort(run, keys);
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    const auto first = static_cast<std::uint32_t>(node_.size());
+    node_.resize(first + keys.size());
+    for (std::uint32_t n = 0; n < keys.size(); ++n) node_of_.emplace(keys[n], first + n);
+    parallel_for(run, keys.size(), 64, [&](std::size_t begin, std::size_t end) {
+      Vec3 last;
+      double bound = std::abs(level_) + 3 * std::ldexp(step_, l);
+      for (std::size_t n = begin; n < end; ++n) {
+        const auto at = morton_decode(keys[n]);
+        const Vec3 p = point({at[0], at[1], at[2]});
+        Nearest& node = node_[first + n];
+        node = surface_.find(p, n == begin ? bound : bound + norm(p - last) * (1 + 1e-6) + 1e-9 * step_);
+        bound = std::abs(node.distance), last = p;
+      }
+    });
+    parallel_for(run, cells.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (leaves[i].kind != Kind::split) continue;
+        for (unsigned k = 0; k < 8; ++k) leaves[i].node[k] = node_of_.at(key_of(corner_of(cells[i], k, side)));
+        if (sees_one_piece(leaves[i]))
+          leaves[i].kind = Kind::smooth;
+        else if (l == 0)
+          leaves[i].kind = Kind::rough;
+      }
+    });
   }
-  Nearest interpolated(const Vec3& p, const Vec3& at, const Cell& cell) const {
-    Nearest result;
+  bool sees_one_piece(const Leaf& leaf) const {
+    return std::all_of(leaf.node.begin(), leaf.node.end(), [&](std::uint32_t n) {
+      return dot(node_[n].gradient, node_[leaf.node[0]].gradient) > same_way;
+    });
+  }
+
+  /// Keeps the leaves, and returns the parts of the others.
+  std::vector<Corner> settle(const std::vector<Corner>& cells, int l, const std::vector<Leaf>& leaves) {
+    std::vector<Corner> parts;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (leaves[i].kind == Kind::split) {
+        for (unsigned k = 0; k < 8; ++k) parts.push_back(corner_of(cells[i], k, 1u << (l - 1)));
+        continue;
+      }
+      leaf_of_.emplace(key_of(cells[i], l), static_cast<std::uint32_t>(leaves_.size()));
+      leaves_.push_back(leaves[i]);
+    }
+    return parts;
+  }
+
+  void enter(const std::array<std::int64_t, 3>& at, Place& place) const {
+    const bool same_leaf = place.level >= 0 && at[0] >= 0 && at[1] >= 0 && at[2] >= 0 &&
+                           at[0] >> place.level == place.at[0] >> place.level &&
+                           at[1] >> place.level == place.at[1] >> place.level &&
+                           at[2] >> place.level == place.at[2] >> place.level;
+    place.at = at;
+    if (same_leaf) return;
+    place.level = -1;
+    for (const std::int64_t c : at)
+      if (c < 0 || c >> top_ != 0) return;
+    for (int l = 0; l <= top_; ++l) {
+      const auto found = leaf_of_.find(key_of(cell_at(at, l), l));
+      if (found == leaf_of_.end()) continue;
+      place.level = l, place.leaf = found->second;
+      return;
+    }
+  }
+  static Corner cell_at(const std::array<std::int64_t, 3>& at, int l) {
+    return {std::uint32_t(at[0]) >> l << l, std::uint32_t(at[1]) >> l << l, std::uint32_t(at[2]) >> l << l};
+  }
+
+  Nearest beyond(const Vec3& p) const { return far_away(p, surface_.side_of(p, level_, 0) < 0); }
+  /// So far from the level that only its side matters.
+  Nearest far_away(const Vec3& p, bool below) const {
+    return {p, {1, 0, 0}, level_ + (below ? -8 : 8) * surface_.spacing()};
+  }
+
+  Nearest interpolated(const Vec3& p, const Vec3& at, const Place& place, const Leaf& leaf) const {
+    const Corner cell = cell_at(place.at, place.level);
+    const double side = std::ldexp(1.0, place.level);
+    const double share[3] = {(at.x - cell[0]) / side, (at.y - cell[1]) / side, (at.z - cell[2]) / side};
     Vec3 gradient;
     double by_value = 0, by_plane = 0;
-    for (unsigned c = 0; c < 8; ++c) {
-      const std::array<double, 3> corner{double(cell.at[0] + (c & 1)), double(cell.at[1] + (c >> 1 & 1)),
-                                         double(cell.at[2] + (c >> 2))};
+    for (unsigned k = 0; k < 8; ++k) {
       double weight = 1;
-      for (int a = 0; a < 3; ++a) weight *= 1 - std::abs(at[a] - corner[std::size_t(a)]);
-      const Nearest& node = *cell.node[c];
-      const Vec3 x = origin_ + step_ * Vec3{corner[0], corner[1], corner[2]};
+      for (unsigned a = 0; a < 3; ++a) weight *= (k >> a & 1) != 0 ? share[a] : 1 - share[a];
+      const Nearest& node = node_[leaf.node[k]];
       by_value += weight * node.distance;
-      by_plane += weight * (node.distance + dot(node.gradient, p - x));
+      by_plane += weight * (node.distance + dot(node.gradient, p - point(corner_of(cell, k, 1u << place.level))));
       gradient += weight * node.gradient;
     }
-    result.distance = 0.5 * (by_value + by_plane);
-    result.gradient = normalized(gradient);
-    return result;
+    return {p, normalized(gradient), 0.5 * (by_value + by_plane)};
   }
-  /// Exactly; the nodes' nearest points bound the search.
-  Nearest nearest_of(const Vec3& p, const Cell& cell) const {
-    double bound = std::numeric_limits<double>::infinity();
-    for (const Nearest* node : cell.node) bound = std::min(bound, squared_norm(p - node->point));
+
+  /// Exactly near the level; the corners' nearest points bound the search. Elsewhere only the side is sure.
+  Nearest nearest_of(const Vec3& p, const Place& place, const Leaf& leaf) const {
+    const Corner cell = cell_at(place.at, place.level);
+    double bound = std::numeric_limits<double>::infinity(), lo = -bound, hi = bound;
+    for (unsigned k = 0; k < 8; ++k) {
+      const Nearest& node = node_[leaf.node[k]];
+      const double away = norm(p - point(corner_of(cell, k, 1u << place.level)));
+      lo = std::max(lo, node.distance - away), hi = std::min(hi, node.distance + away);
+      bound = std::min(bound, squared_norm(p - node.point));
+    }
+    const double margin = 0.01 * step_;
+    if (lo > level_ + margin) return {p, {1, 0, 0}, lo};
+    if (hi < level_ - margin) return {p, {1, 0, 0}, hi};
     return surface_.find(p, std::sqrt(bound) * (1 + 1e-6) + 1e-9 * step_);
   }
 
   const SurfaceDistance& surface_;
   double level_, step_;
+  int levels_, top_ = 0;
   Vec3 origin_;
   std::vector<Nearest> node_;
-  std::unordered_map<std::uint64_t, std::uint32_t> index_;
+  std::unordered_map<std::uint64_t, std::uint32_t> node_of_;
+  std::vector<Leaf> leaves_;
+  std::unordered_map<std::uint64_t, std::uint32_t> leaf_of_;
 };
 
 class DistanceField final : public Field {
@@ -203,19 +276,19 @@ class DistanceField final : public Field {
       : offset_(offset), surface_(samples, run) {
     // A distance changes its direction over about as much as itself.
     const double cells = std::abs(offset) / spacing;
-    lattice_.emplace(surface_, offset, (cells >= 24 ? 8 : cells >= 8 ? 4 : cells >= 2.5 ? 2 : 1) * spacing, box, run);
+    lattice_.emplace(surface_, offset, spacing, cells >= 24 ? 3 : cells >= 8 ? 2 : cells >= 2.5 ? 1 : 0, box, run);
   }
 
   void evaluate(const PointBatch& points, std::span<float> values) const override {
-    DistanceLattice::Cell cell;
+    DistanceLattice::Place place;
     for (std::size_t i = 0; i < values.size(); ++i)
-      values[i] = static_cast<float>(find({points.x[i], points.y[i], points.z[i]}, cell).distance - offset_);
+      values[i] = static_cast<float>(lattice_->find({points.x[i], points.y[i], points.z[i]}, place).distance - offset_);
   }
   void evaluate_gradient(const PointBatch& points, std::span<float> values, std::span<float> dx, std::span<float> dy,
                          std::span<float> dz) const override {
-    DistanceLattice::Cell cell;
+    DistanceLattice::Place place;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const Nearest found = find({points.x[i], points.y[i], points.z[i]}, cell);
+      const Nearest found = lattice_->find({points.x[i], points.y[i], points.z[i]}, place);
       values[i] = static_cast<float>(found.distance - offset_);
       dx[i] = static_cast<float>(found.gradient.x), dy[i] = static_cast<float>(found.gradient.y),
       dz[i] = static_cast<float>(found.gradient.z);
@@ -229,21 +302,14 @@ class DistanceField final : public Field {
                       : Interval{-2 * reach, 2 * reach};
   }
   double evaluate(const Vec3& point, Vec3* gradient) const override {
-    DistanceLattice::Cell cell;
-    const Nearest found = find(point, cell);
+    DistanceLattice::Place place;
+    const Nearest found = lattice_->find(point, place);
     if (gradient) *gradient = found.gradient;
     return found.distance - offset_;
   }
   double epsilon() const override { return 0.1 * surface_.spacing(); }
 
  private:
-  Nearest find(const Vec3& p, DistanceLattice::Cell& cell) const {
-    if (const auto found = lattice_->find(p, cell)) return *found;
-    // So far from the level that only its side matters.
-    const int side = surface_.side_of(p, offset_, 0);
-    return {p, {1, 0, 0}, offset_ + (side < 0 ? -1 : 1) * 8 * surface_.spacing()};
-  }
-
   double offset_;
   SurfaceDistance surface_;
   std::optional<DistanceLattice> lattice_;
