@@ -19,21 +19,9 @@ class Crowding {
   }
 
   Creases resolved() const {
-    Creases kept;
-    std::map<Index, Index> corners;
-    const auto corner = [&](Index old) {
-      if (old == none) return none;
-      const auto [it, added] = corners.insert({old, static_cast<Index>(kept.corners.size())});
-      if (added) kept.corners.push_back(creases_.corners[old]);
-      return it->second;
-    };
-    for (Index c = 0; c < creases_.chains.size(); ++c) {
-      if (is_crowded(c)) continue;
-      CreaseChain chain = creases_.chains[c];
-      chain.from = corner(chain.from), chain.to = corner(chain.to);
-      kept.chains.push_back(std::move(chain));
-    }
-    return kept;
+    std::vector<char> doomed(creases_.chains.size());
+    for (Index c = 0; c < creases_.chains.size(); ++c) doomed[c] = is_crowded(c);
+    return without_chains(creases_, doomed);
   }
 
  private:
@@ -83,6 +71,23 @@ class Crowding {
 
 Creases without_crowded(const Creases& creases, double reach) {
   return Crowding(creases, reach).resolved();
+}
+
+Creases without_chains(const Creases& creases, const std::vector<char>& doomed) {
+  Creases kept;
+  std::vector<Index> now(creases.corners.size(), none);
+  const auto corner = [&](Index c) {
+    if (c == none) return none;
+    if (now[c] == none) now[c] = static_cast<Index>(kept.corners.size()), kept.corners.push_back(creases.corners[c]);
+    return now[c];
+  };
+  for (std::size_t i = 0; i < creases.chains.size(); ++i) {
+    if (doomed[i]) continue;
+    CreaseChain chain = creases.chains[i];
+    chain.from = corner(chain.from), chain.to = corner(chain.to);
+    kept.chains.push_back(std::move(chain));
+  }
+  return kept;
 }
 
 }  // namespace evenmesh

@@ -118,18 +118,21 @@ class Listener {
   void hear_block(const SampleBlock& block, const BlockBox& box, Witness& witness, std::vector<Index>& nearest) {
     const Vec3 origin = samples_.block_center(block);
     collect(origin + Vec3{box.center[0], box.center[1], box.center[2]}, norm({box.half[0], box.half[1], box.half[2]}));
+    const std::size_t count = found_.size();
+    x_.resize(count), y_.resize(count), z_.resize(count), squared_.resize(count);
+    for (std::size_t c = 0; c < count; ++c) {
+      const Vec3 at = seeds_[found_[c].second] - origin;
+      x_[c] = at.x, y_[c] = at.y, z_[c] = at.z;
+    }
     for (Index i = block.begin; i < block.end; ++i) {
-      const Vec3 p = origin + Vec3{samples_.x[i], samples_.y[i], samples_.z[i]};
-      std::pair<double, Index> first{std::numeric_limits<double>::infinity(), no_seed};
-      distances_.clear();
-      for (const auto& [from_center, seed] : found_) {
-        distances_.push_back({norm(seeds_[seed] - p), seed});
-        first = std::min(first, distances_.back());
-      }
-      nearest[i] = first.second;
+      const double least = measure({samples_.x[i], samples_.y[i], samples_.z[i]});
+      const double within = (std::sqrt(least) + margin_) * (std::sqrt(least) + margin_);
       near_.clear();
-      for (const auto& entry : distances_)
-        if (entry.first <= first.first + margin_) near_.push_back(entry);
+      nearest[i] = no_seed;
+      for (std::size_t c = 0; c < count; ++c) {
+        if (squared_[c] == least) nearest[i] = std::min(nearest[i], found_[c].second);
+        if (squared_[c] <= within) near_.push_back({std::sqrt(squared_[c]), found_[c].second});
+      }
       if (near_.size() > 1) witness.hear(near_);
     }
   }
@@ -147,11 +150,23 @@ class Listener {
       std::erase_if(found_, [&](const auto& entry) { return entry.first > needed * needed; });
   }
 
+  /// Squared distances from p to all seeds found, and the least of them.
+  double measure(const Vec3& p) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < x_.size(); ++c) {
+      const double dx = x_[c] - p.x, dy = y_[c] - p.y, dz = z_[c] - p.z;
+      squared_[c] = dx * dx + dy * dy + dz * dz;
+    }
+    for (const double d : squared_) least = d < least ? d : least;
+    return least;
+  }
+
   const SampleSet& samples_;
   std::span<const Vec3> seeds_;
   const SeedRows& rows_;
   double margin_;
-  std::vector<std::pair<double, Index>> found_, distances_, near_;
+  std::vector<std::pair<double, Index>> found_, near_;
+  std::vector<double> x_, y_, z_, squared_;  ///< of the seeds found, from the block's centre
 };
 
 template <typename Item>

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
+#include "connect/crease_crowding.h"
 #include "connect/flood.h"
 #include "connect/fragments.h"
 #include "connect/pinches.h"
@@ -50,6 +52,8 @@ constexpr int patience = 3;              ///< rounds without a fifth fewer defec
 constexpr int ball_rounds = 32;          ///< those, and attempts to change the topology where it resists
 constexpr int topology_rounds = 50;      ///< attempts altogether; the last ones divide cells down to single samples
 constexpr int simplifying_rounds = 100;  ///< a ball grows up in ten of them
+constexpr int releasing_from = 12;       ///< from here on without creases there
+constexpr int shaking_from = 5;          ///< round from which on every other one tries other seeds instead
 constexpr int trim_rounds = 6;           ///< attempts to meet the vertex count in the end
 constexpr int trim_seed_rounds = 3;      ///< after each of them
 constexpr std::size_t settling_evaluations = 5;
@@ -94,9 +98,9 @@ class Cells {
   void find_sharp_edges() {
     if (!options_.crease_angle || options_.wrap) return;
     stages_.stage("creases", 0.01, [&] {
-      const double edge = edge_length_of(samples_.total_area, static_cast<double>(count_));
-      creases_ = find_creases(samples_, *options_.crease_angle, edge, run_);
-      crease_seeds_ = place_crease_seeds(creases_, edge);
+      crease_edge_ = edge_length_of(samples_.total_area, static_cast<double>(count_));
+      creases_ = find_creases(samples_, *options_.crease_angle, crease_edge_, run_);
+      crease_seeds_ = place_crease_seeds(creases_, crease_edge_);
     });
     run_.log(fmt::format("creases: {} chains, {} corners, {} seeds", creases_.chains.size(), creases_.corners.size(),
                          held()));
@@ -294,6 +298,11 @@ class Cells {
     for (int round = 0; round < simplifying_rounds && needs_seeds(); ++round) {
       std::vector<BadEdge> edges;
       for (const auto& [a, b] : defects()) edges.push_back({seeds_[a], seeds_[b]});
+      if (round >= shaking_from && round % 2 != 0) {
+        if (round >= releasing_from) release_creases();
+        shake(static_cast<std::uint64_t>(round));
+        continue;
+      }
       const std::vector<std::uint32_t> changed = list.next_round(edges);
       run_.log(fmt::format("simplify {}: {} places, {} seeds, {} balls, {} new or grown", round, edges.size(),
                            seeds_.size(), list.balls().size(), changed.size()));
@@ -308,6 +317,43 @@ class Cells {
       connect();
       if (!unconnected().empty()) clear_dust();
     }
+  }
+
+  /// Other seeds where some do not get along, however large the balls are.
+  void shake(std::uint64_t round) {
+    std::vector<char> bad(seeds_.size(), 0);
+    for (const auto& [a, b] : defects()) bad[std::max(a, b)] = 1;
+    const std::size_t given = seeds_.size() - complex_.pieces.size();
+    std::vector<Vec3> kept;
+    for (std::size_t s = 0; s < given; ++s)
+      if (!bad[s] || s < held()) kept.push_back(seeds_[s]);
+    seeds_ = std::move(kept);
+    stages_.stage("balance", 0, [&] { adjust_count(*evaluator_, seeds_, given, options_.seed + round, run_, held()); });
+    settle();
+    connect();
+  }
+
+  /// Gives up the chains whose seeds do not get along; the other seeds of these are free now.
+  void release_creases() {
+    std::vector<char> bad(seeds_.size(), 0);
+    for (const auto& [a, b] : defects()) bad[a] = bad[b] = 1;
+    const CreaseSeeds old = std::move(crease_seeds_);
+    std::vector<char> doomed(creases_.chains.size(), 0);
+    for (std::size_t s = old.corners; s < old.places.size(); ++s)
+      if (bad[s]) doomed[old.chain_of(s)] = 1;
+    for (std::size_t c = 0; c < doomed.size(); ++c)
+      for (const std::uint32_t corner : {creases_.chains[c].from, creases_.chains[c].to})
+        if (corner != CreaseChain::none && bad[corner]) doomed[c] = 1;
+    creases_ = without_chains(creases_, doomed);
+    crease_seeds_ = place_crease_seeds(creases_, crease_edge_);
+    forget_pieces();
+    std::set<std::array<double, 3>> stay;
+    for (const Vec3& p : crease_seeds_.places) stay.insert({p.x, p.y, p.z});
+    std::vector<Vec3> seeds = crease_seeds_.places;
+    for (std::size_t s = 0; s < seeds_.size(); ++s)
+      if (s >= old.places.size() || !stay.contains({seeds_[s].x, seeds_[s].y, seeds_[s].z})) seeds.push_back(seeds_[s]);
+    seeds_ = std::move(seeds);
+    connect();
   }
 
   /// Unites the changed balls with the solid.
@@ -388,6 +434,7 @@ class Cells {
   LabelComplex complex_;
   Creases creases_;
   CreaseSeeds crease_seeds_;
+  double crease_edge_ = 0;
   BallIndex balls_{{}};
 };
 

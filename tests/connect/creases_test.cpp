@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "connect/connect_testing.h"
+#include "connect/crease_crowding.h"
 #include "connect/crease_seeds.h"
 #include "cvt/starts.h"
 #include "geometry/primitives.h"
@@ -100,4 +101,20 @@ TEST(CreaseSeeds, AreEvenlySpacedAndNeighboursInTheDual) {
 }
 
 }  // namespace
+TEST(CreaseChains, LeftOutTakeTheirCornersAlong) {
+  Creases creases;
+  creases.corners = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  for (const auto& [from, to] : {std::pair{0u, 1u}, std::pair{1u, 2u}, std::pair{2u, 1u}})
+    creases.chains.push_back({from, to, {creases.corners[from], creases.corners[to]}, {0, 1}});
+  const Creases two = without_chains(creases, {0, 1, 1});
+  ASSERT_EQ(two.chains.size(), 1u);
+  EXPECT_EQ(two.corners.size(), 2u);
+  const Creases rest = without_chains(creases, {1, 0, 0});
+  ASSERT_EQ(rest.corners.size(), 2u);
+  for (const CreaseChain& chain : rest.chains) {
+    EXPECT_EQ(norm(rest.corners[chain.from] - chain.points.front()), 0);
+    EXPECT_EQ(norm(rest.corners[chain.to] - chain.points.back()), 0);
+  }
+}
+
 }  // namespace evenmesh
