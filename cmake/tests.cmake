@@ -6,7 +6,11 @@ include(GoogleTest)
 add_custom_target(unit_tests)  # without the program, unless a test drives it
 
 function(evenmesh_test room)
-  file(GLOB sources CONFIGURE_DEPENDS tests/${room}/*.cpp)
+  set(folder tests/${room})
+  if(room STREQUAL "gl" AND NOT EVENMESH_GL)
+    set(folder tests/gl/off)
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   if(EVENMESH_SANITIZE)  # OpenVDB takes minutes to build so, and is not ours
     list(FILTER sources EXCLUDE REGEX vdb_test)
   endif()

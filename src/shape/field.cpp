@@ -44,6 +44,10 @@ Interval Field::evaluate(const Box&) const {
   return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 }
 
+void Field::enclose(std::span<const Box> boxes, std::span<Interval> ranges) const {
+  for (std::size_t i = 0; i < boxes.size(); ++i) ranges[i] = evaluate(boxes[i]);
+}
+
 double Field::evaluate(const Vec3& point, Vec3* gradient) const {
   const float x = static_cast<float>(point.x), y = static_cast<float>(point.y), z = static_cast<float>(point.z);
   const PointBatch batch{{&x, 1}, {&y, 1}, {&z, 1}};

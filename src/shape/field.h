@@ -35,6 +35,11 @@ class Field {
 
   /// Encloses f over a box; the default knows nothing ([-inf, inf]), then nothing is pruned.
   virtual Interval evaluate(const Box& box) const;
+  /// Encloses f over each of several boxes. The default asks for one after the other.
+  virtual void enclose(std::span<const Box> boxes, std::span<Interval> ranges) const;
+  /// Points per call from which on the cost per point no longer falls. Fields that want many are not asked for single
+  /// points.
+  virtual std::size_t batch_size() const { return 1024; }
 
   /// f and its gradient at one point in double precision; gradient may be null. The default rounds through evaluate().
   virtual double evaluate(const Vec3& point, Vec3* gradient) const;

@@ -1,0 +1,10 @@
+# Writes OUTPUT, a table of the files SHADERS for src/gl/shader_files.h.
+set(text "#include \"gl/shader_files.h\"\n\nnamespace evenmesh::gl {\n\n")
+string(APPEND text "const std::vector<ShaderFile>& shader_files() {\n  static const std::vector<ShaderFile> files{\n")
+foreach(shader ${SHADERS})
+  get_filename_component(name ${shader} NAME)
+  file(READ ${shader} content)
+  string(APPEND text "{\"${name}\", R\"glsl(${content})glsl\"},\n")
+endforeach()
+string(APPEND text "  };\n  return files;\n}\n\n}  // namespace evenmesh::gl\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,0 +1,28 @@
+/// What stands for the room where evenmesh is built without OpenGL.
+
+#include "evenmesh/glsl.h"
+
+#include "evenmesh/error.h"
+
+namespace evenmesh {
+namespace {
+
+[[noreturn]] void refuse() {
+  throw NotAvailable("this build has no OpenGL: configure with -DEVENMESH_GL=ON");
+}
+
+}  // namespace
+
+Shape shape_from_glsl(std::string, const GlslOptions&, std::string) {
+  refuse();
+}
+
+std::string gl_renderer(const std::string&) {
+  refuse();
+}
+
+bool gl_stuck() {
+  return false;
+}
+
+}  // namespace evenmesh

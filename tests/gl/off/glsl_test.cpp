@@ -1,0 +1,20 @@
+/// Without OpenGL, everything else works, and shaders are refused by name.
+
+#include "evenmesh/glsl.h"
+
+#include <gtest/gtest.h>
+
+#include "evenmesh/error.h"
+
+namespace evenmesh {
+namespace {
+
+TEST(GlslOff, IsRefused) {
+  EXPECT_THROW(shape_from_glsl("float map(vec3 p) { return p.x; }"), NotAvailable);
+  EXPECT_THROW(gl_renderer(), NotAvailable);
+  EXPECT_FALSE(gl_stuck());
+  EXPECT_TRUE(is_glsl("a.glsl", ""));
+}
+
+}  // namespace
+}  // namespace evenmesh
