@@ -144,10 +144,7 @@ class Job {
         for (std::uint32_t s = block.begin; s < block.end; ++s)
           box.add(samples.block_center(block) + Vec3{samples.x[s], samples.y[s], samples.z[s]});
       const double h = 1.5 * samples.grid.spacing;
-      for (int a = 0; a < 3; ++a) {
-        shape_.bounds.lo[a] = std::max(shape_.bounds.lo[a], box.lo[a] - h);
-        shape_.bounds.hi[a] = std::min(shape_.bounds.hi[a], box.hi[a] + h);
-      }
+      shape_.bounds = common(shape_.bounds, Box{box.lo - Vec3{h, h, h}, box.hi + Vec3{h, h, h}});
     });
   }
 

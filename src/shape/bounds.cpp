@@ -99,13 +99,6 @@ void add_possible_cells(const Field& field, const Box& box, int depth, Box& foun
   for (int i = 0; i < 8; ++i) add_possible_cells(field, octant(box, i), depth - 1, found);
 }
 
-Box intersection(const Box& a, const Box& b) {
-  Box c;
-  for (int axis = 0; axis < 3; ++axis)
-    c.lo[axis] = std::max(a.lo[axis], b.lo[axis]), c.hi[axis] = std::min(a.hi[axis], b.hi[axis]);
-  return c;
-}
-
 }  // namespace
 
 Box find_bounds(const Field& field) {
@@ -120,7 +113,7 @@ Box find_bounds(const Field& field) {
     const Vec3 old_size = box.size(), size = found.size();
     const bool rest = size.x > enough * old_size.x && size.y > enough * old_size.y && size.z > enough * old_size.z;
     const Vec3 cell = (rest ? 1.0 : 0.25) / 64 * old_size;
-    box = intersection(Box{found.lo - cell, found.hi + cell}, Box{box.lo - cell, box.hi + cell});
+    box = common(Box{found.lo - cell, found.hi + cell}, Box{box.lo - cell, box.hi + cell});
     if (!rest) continue;
     Box inside;
     if (!seen) add_inside_points(field, box, 128, inside);
@@ -144,9 +137,7 @@ Box common_bounds(const std::vector<Shape>& operands) {
   Box box{{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
   std::string reason;
   for (const Shape& operand : operands) try {
-      const Box other = find_bounds(operand);
-      for (int a = 0; a < 3; ++a)
-        box.lo[a] = std::max(box.lo[a], other.lo[a]), box.hi[a] = std::min(box.hi[a], other.hi[a]);
+      box = common(box, find_bounds(operand));
     } catch (const UnusableInput& error) {
       reason = error.what();
     }
