@@ -119,7 +119,7 @@ const std::vector<Enclosure>& ProgramField::enclose_all(const Box& box) const {
   for (std::size_t i = 0; i < enclosures.size(); ++i) {
     const Node& n = program_.nodes[i];
     if (n.op <= Op::z)
-      enclosures[i] = enclose(box.lo[static_cast<int>(n.op)], box.hi[static_cast<int>(n.op)]);
+      enclosures[i] = evenmesh::enclose(box.lo[static_cast<int>(n.op)], box.hi[static_cast<int>(n.op)]);
     else
       enclosures[i] = apply(n, enclosures[n.a], enclosures[n.b]);
   }

@@ -35,6 +35,11 @@ class Field {
 
   /// Encloses f over a box; the default knows nothing ([-inf, inf]), then nothing is pruned.
   virtual Interval evaluate(const Box& box) const;
+  /// Encloses f over each of several boxes. The default asks for one after the other.
+  virtual void enclose(std::span<const Box> boxes, std::span<Interval> ranges) const;
+  /// Points per call from which on the cost per point no longer falls. Fields that want many are not asked for single
+  /// points.
+  virtual std::size_t batch_size() const { return 1024; }
 
   /// f and its gradient at one point in double precision; gradient may be null. The default rounds through evaluate().
   virtual double evaluate(const Vec3& point, Vec3* gradient) const;
@@ -48,5 +53,10 @@ class Field {
   /// True when f has a usable gradient; false for indicator functions, whose value is only -1 or 1.
   virtual bool has_gradient() const { return true; }
 };
+
+/// Whether a call costs as much as many points: then it pays to ask for all that is known to be needed at once.
+inline bool wants_batches(const Field& field) {
+  return field.batch_size() > 1024;
+}
 
 }  // namespace evenmesh
