@@ -113,5 +113,14 @@ TEST(RemoteField, StaysOneWhereItIsMoved) {
   EXPECT_EQ(ranges[1].hi, std::numeric_limits<double>::infinity());
 }
 
+TEST(RemoteField, ABoxAroundItIsNoInterval) {
+  Shape shape = shape_from_expression("x^2+y^2-0.5", {}, {{-1, -1, -1}, {1, 1, 1}});
+  const Remote far = remote(shape);
+  const Affine turn = Affine::rotate({0, 0, 1}, 30);
+  const SampleSet set = sampled(transformed(far.shape, turn), 100);
+  expect_same(set, sampled(transformed(shape, turn), 100));
+  EXPECT_LE(double(far.field->asked), 1.06 * points_of(set.grid) + 20.0 * double(set.size()));
+}
+
 }  // namespace
 }  // namespace evenmesh
