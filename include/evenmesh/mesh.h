@@ -78,6 +78,12 @@ struct Box {
   }
   friend bool operator==(const Box&, const Box&) = default;
 };
+/// What two boxes have in common; empty where they lie apart.
+inline Box common(const Box& a, const Box& b) {
+  Box box;
+  for (int i = 0; i < 3; ++i) box.lo[i] = std::max(a.lo[i], b.lo[i]), box.hi[i] = std::min(a.hi[i], b.hi[i]);
+  return box;
+}
 
 /// Three vertex indices, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "connect/brick_union.h"
+#include "connect/surface_parts.h"
 
 namespace evenmesh {
 namespace {
@@ -307,17 +308,11 @@ Sheets choose_sheets(const ShellSurface& surface, const SiteVoxels& sites, doubl
 
 Sheets outer_sheets(const ShellSurface& surface, Run& run) {
   const SampleSet& samples = surface.samples;
-  std::vector<Index> part = part_roots(samples, cube_bricks(samples, run), run, [](Index, Index) { return true; });
-  // The volume within a part: from its crossings along x. Cavities come out negative.
-  std::vector<double> volume(number_sets(part), 0);
-  for (const SampleBlock& block : samples.blocks)
-    for (Index s = block.begin; s < block.end_of_axis(0); ++s) {
-      const double x = brick_size * block.brick[0] + samples.edge[s].i() + 0.5;
-      volume[part[s]] += samples.edge[s].lower_end_inside() ? x : -x;
-    }
+  const SurfaceParts parts = surface_parts(samples, run);
+  const std::vector<double> volume = volumes_within(parts, samples);
   Sheets result;
   result.chosen.resize(samples.size());
-  for (Index s = 0; s < samples.size(); ++s) result.chosen[s] = volume[part[s]] > 0;
+  for (Index s = 0; s < samples.size(); ++s) result.chosen[s] = volume[parts.part[s]] > 0;
   result.border.assign(samples.size(), 0);
   result.sheets = static_cast<std::size_t>(std::count_if(volume.begin(), volume.end(), [](double v) { return v > 0; }));
   return result;

@@ -21,6 +21,16 @@ SurfaceParts surface_parts(const SampleSet& samples, Run& run) {
   return parts;
 }
 
+std::vector<double> volumes_within(const SurfaceParts& parts, const SampleSet& samples) {
+  std::vector<double> volume(parts.area.size(), 0);
+  for (const SampleBlock& block : samples.blocks)
+    for (std::uint32_t s = block.begin; s < block.end_of_axis(0); ++s) {
+      const double x = brick_size * block.brick[0] + samples.edge[s].i() + 0.5;
+      volume[parts.part[s]] += samples.edge[s].lower_end_inside() ? x : -x;
+    }
+  return volume;
+}
+
 std::size_t drop_dust(SampleSet& samples, double least_area, Run& run) {
   const SurfaceParts parts = surface_parts(samples, run);
   const auto dropped = static_cast<std::size_t>(
@@ -44,16 +54,14 @@ struct Crossing {
 std::size_t fill_cavities(SampleSet& samples, Run& run) {
   const SurfaceParts parts = surface_parts(samples, run);
   if (parts.area.size() < 2) return 0;
-  // The volume within a part, from its crossings along x; cavities come out negative.
-  std::vector<double> volume(parts.area.size(), 0);
+  const std::vector<double> volume = volumes_within(parts, samples);
   std::vector<Crossing> crossings;
   for (const SampleBlock& block : samples.blocks)
     for (std::uint32_t s = block.begin; s < block.end_of_axis(0); ++s) {
       const EdgeCode edge = samples.edge[s];
-      const std::uint32_t cell = brick_size * block.brick[0] + edge.i(), part = parts.part[s];
-      volume[part] += edge.lower_end_inside() ? cell + 0.5 : -(cell + 0.5);
+      const std::uint32_t cell = brick_size * block.brick[0] + edge.i();
       const std::uint64_t j = brick_size * block.brick[1] + edge.j(), k = brick_size * block.brick[2] + edge.k();
-      crossings.push_back({k << 16 | j, cell, part});
+      crossings.push_back({k << 16 | j, cell, parts.part[s]});
     }
   parallel_sort(run, crossings);
   // A part that lies within another one has an odd number of that one's crossings before its own.

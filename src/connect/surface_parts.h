@@ -16,6 +16,9 @@ struct SurfaceParts {
 /// Cost: about 50 ns per sample.
 SurfaceParts surface_parts(const SampleSet& samples, Run& run);
 
+/// The volume within every part, from its crossings along x, in cells of the grid. Cavities come out negative.
+std::vector<double> volumes_within(const SurfaceParts& parts, const SampleSet& samples);
+
 /// Leaves out the parts with less than `least_area`; returns how many.
 std::size_t drop_dust(SampleSet& samples, double least_area, Run& run);
 

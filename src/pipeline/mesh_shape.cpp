@@ -27,6 +27,7 @@
 #include "sample/dexels.h"
 #include "sample/sample.h"
 #include "shape/bounds.h"
+#include "shape/field.h"
 
 namespace evenmesh {
 namespace {
@@ -144,10 +145,7 @@ class Job {
         for (std::uint32_t s = block.begin; s < block.end; ++s)
           box.add(samples.block_center(block) + Vec3{samples.x[s], samples.y[s], samples.z[s]});
       const double h = 1.5 * samples.grid.spacing;
-      for (int a = 0; a < 3; ++a) {
-        shape_.bounds.lo[a] = std::max(shape_.bounds.lo[a], box.lo[a] - h);
-        shape_.bounds.hi[a] = std::min(shape_.bounds.hi[a], box.hi[a] + h);
-      }
+      shape_.bounds = common(shape_.bounds, Box{box.lo - Vec3{h, h, h}, box.hi + Vec3{h, h, h}});
     });
   }
 
@@ -256,7 +254,7 @@ class Job {
     hold_creases(mesh, cells);
     edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
     if (options_.placement != Placement::centroid && !options_.wrap) {
-      projector_ = shape_.compound() ? make_projector(samples_) : make_projector(shape_, shape_.bounds, run_);
+      projector_ = projector();
       if (!cells.balls.balls().empty())
         projector_ = std::make_unique<RegularizedProjector>(std::move(projector_), cells.balls);
       if (projector_)
@@ -269,6 +267,13 @@ class Job {
     for (const auto& [label, place] : cells.anchors)
       if (const std::uint32_t v = index[label]; v != 0xffffffffu && at_rim_[v]) mesh.vertices[v] = place;
     return mesh;
+  }
+
+  /// Onto the shape itself, or onto the samples where that would take calls of a field for single points.
+  std::unique_ptr<Projector> projector() const {
+    const Field* field = shape_.field();
+    const bool by_samples = shape_.compound() || (field && wants_batches(*field) && field->has_gradient());
+    return by_samples ? make_projector(samples_) : make_projector(shape_, shape_.bounds, run_);
   }
 
   /// Vertices of seeds on creases go there, except where a ball has covered the crease.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/parallel.h"
@@ -10,6 +11,13 @@
 #include "shape/field.h"
 
 namespace evenmesh {
+
+/// A cube of grid points: those from the corner on, and the side's next.
+struct GridCube {
+  std::array<std::uint32_t, 3> corner{};
+  unsigned side = 0;     ///< in cells: a power of two, 8 or more
+  bool unknown = false;  ///< the field tells nothing about it
+};
 
 /// Coordinates of all grid points, rounded once, so that every brick hands the very same floats to the field, and the
 /// range of grid points that lie within the bounds.
@@ -20,6 +28,7 @@ struct FieldGrid {
   std::array<double, 3> face_lo{}, face_hi{};    ///< faces of the bounds in cells from the origin
 
   bool within(unsigned axis, std::int32_t i) const { return i >= first[axis] && i <= last[axis]; }
+  bool within(const GridCube& cube) const;
 };
 FieldGrid make_field_grid(const Grid& grid, const Box& bounds);
 
@@ -41,26 +50,38 @@ struct FieldPart {
   bool cut_by_bounds = false;
 };
 
-/// Finds the edges of a cube of bricks on which f changes its sign.
+/// Finds the edges in cubes of bricks on which f changes its sign.
 class TileScanner {
  public:
-  /// Appends the brackets of `side` / 8 bricks cubed from grid point `corner` on, in Morton order of the bricks, and
-  /// their blocks to `part`. @param side  8 or 32
-  void scan(const Field& field, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner, unsigned side,
-            std::vector<Bracket>& brackets, FieldPart& part);
+  /// Appends the brackets of the cubes, which are in Morton order, in that order of their bricks, and the blocks to
+  /// `part`. Evaluates as many cubes by one call as go into the field's batch, and at least one; of each only the
+  /// points within the bounds and next to them.
+  void scan(const Field& field, const FieldGrid& grid, std::span<const GridCube> cubes, std::vector<Bracket>& brackets,
+            FieldPart& part);
 
  private:
-  bool evaluate(const Field& field, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner, unsigned side);
-  void scan_brick(const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
-                  const std::array<std::uint32_t, 3>& offset, std::vector<Bracket>& brackets, FieldPart& part);
+  /// The evaluated points of a cube: a box of them, z fastest.
+  struct Tile {
+    GridCube cube;
+    std::array<std::uint32_t, 3> start{}, points{};
+    std::size_t at = 0;  ///< of the first point in the arrays
+    std::size_t count() const { return std::size_t{points[0]} * points[1] * points[2]; }
+  };
+  static Tile tile_of(const GridCube& cube, const FieldGrid& grid);
+  std::size_t collect(const FieldGrid& grid, std::span<const GridCube> cubes, std::size_t batch);
+  void place(const Tile& tile, const FieldGrid& grid);
+  bool has_border(const Tile& tile, const FieldGrid& grid);
+  void scan_brick(const Tile& tile, const FieldGrid& grid, const std::array<std::uint32_t, 3>& start,
+                  std::vector<Bracket>& brackets, FieldPart& part);
 
-  unsigned points_ = 0;  // per side of the tile
+  std::vector<Tile> tiles_;
   std::vector<float> x_, y_, z_, f_;
   std::vector<std::uint8_t> inside_;
 };
 
 /// Finds where f = 0 on each bracket, to 1e-4 cells, with its normal, and fills in the arrays of `part`.
-/// Fields without gradient are bisected to 2^-12 cells and get the edge's axis as their normal.
+/// Fields without gradient are bisected to 2^-12 cells and get the edge's axis as their normal. Calls of the field: two
+/// or three, and one for each step that the slowest root of a batch takes, at most 40.
 class RootFinder {
  public:
   void find(const Field& field, const FieldGrid& grid, std::vector<Bracket>& brackets, FieldPart& part);

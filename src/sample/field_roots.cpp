@@ -6,7 +6,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t kBatch = 1024;  // points per evaluation: enough to hide its overhead, small enough for the cache
+constexpr std::size_t kBatch = 1024;  // least points per evaluation: enough to hide its overhead, few for the cache
 constexpr float kTolerance = 1e-4f;   // cells
 constexpr float kAgreement = 1e-3f;   // cells; between Newton's and the secant's guess
 constexpr float kBeyond = 1e-3f;      // cells beyond a face of the bounds where f is asked whether it goes on
@@ -50,15 +50,17 @@ void RootFinder::find(const Field& field, const FieldGrid& grid, std::vector<Bra
   field_ = &field, grid_ = &grid, part_ = &part;
   for (std::vector<float>* v : {&part.x, &part.y, &part.z, &part.area}) v->resize(brackets.size());
   part.normal.resize(brackets.size()), part.edge.resize(brackets.size());
-  for (std::size_t begin = 0; begin < brackets.size(); begin += kBatch)
-    find_batch(std::span(brackets).subspan(begin, std::min(kBatch, brackets.size() - begin)), begin, part);
+  const std::size_t batch = std::max(kBatch, field.batch_size());
+  for (std::size_t begin = 0; begin < brackets.size(); begin += batch)
+    find_batch(std::span(brackets).subspan(begin, std::min(batch, brackets.size() - begin)), begin, part);
 }
 
 void RootFinder::find_batch(std::span<Bracket> brackets, std::size_t first, FieldPart& part) {
   const std::size_t n = brackets.size();
   roots_.assign(n, Root{});
   active_.clear();
-  for (std::vector<float>* v : {&x_, &y_, &z_, &f_, &dx_, &dy_, &dz_}) v->resize(kBatch);
+  for (std::vector<float>* v : {&x_, &y_, &z_, &f_, &dx_, &dy_, &dz_})
+    if (v->size() < n) v->resize(n);
   clip_to_bounds(brackets);
   if (field_->has_gradient()) {
     first_guess(brackets);

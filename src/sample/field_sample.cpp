@@ -4,102 +4,144 @@
 
 #include "sample/blocks.h"
 #include "sample/field_parts.h"
-#include "sample/morton.h"
 
 namespace evenmesh {
 namespace {
 
-using Index = std::array<std::uint32_t, 3>;
+constexpr unsigned kNode = 64;          // grid points per side of a node, for which a field may be specialized
+constexpr std::size_t kMostNodes = 64;  // of a task: the roots of all are sought together
 
-constexpr unsigned kNode = 64;  // grid points per side of a task
-
-struct Node {
-  Index corner;
-};
+using Cubes = std::vector<GridCube>;
 
 // What interval arithmetic says about a cube of grid points.
 enum class Verdict { empty, mixed, unknown };
 
 // Holds all points that are asked for in the cube: roots and probes are rounded.
-Box cube(const FieldGrid& grid, const Index& corner, unsigned side) {
+Box box_of(const FieldGrid& grid, const GridCube& cube) {
   Box box;
   const double slack = 0.01 * grid.grid.spacing;
   for (unsigned a = 0; a < 3; ++a) {
-    const auto top = std::min<std::size_t>(corner[a] + side, grid.coordinate[a].size() - 1);
-    box.lo[static_cast<int>(a)] = grid.coordinate[a][corner[a]] - slack;
+    const auto top = std::min<std::size_t>(cube.corner[a] + cube.side, grid.coordinate[a].size() - 1);
+    box.lo[static_cast<int>(a)] = grid.coordinate[a][cube.corner[a]] - slack;
     box.hi[static_cast<int>(a)] = grid.coordinate[a][top] + slack;
   }
   return box;
 }
 
-Verdict judge(const Field& field, const FieldGrid& grid, const Index& corner, unsigned side) {
-  bool within = true;
+bool meets_bounds(const FieldGrid& grid, const GridCube& cube) {
   for (unsigned a = 0; a < 3; ++a) {
-    const auto lo = static_cast<std::int32_t>(corner[a]), hi = static_cast<std::int32_t>(corner[a] + side);
-    if (hi < grid.first[a] || lo > grid.last[a]) return Verdict::empty;
-    within = within && lo >= grid.first[a] && hi <= grid.last[a];
+    const auto lo = static_cast<std::int32_t>(cube.corner[a]),
+               hi = static_cast<std::int32_t>(cube.corner[a] + cube.side);
+    if (cube.corner[a] >= grid.grid.size[a] || hi < grid.first[a] || lo > grid.last[a]) return false;
   }
-  const Interval range = field.evaluate(cube(grid, corner, side));
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (!(range.lo > -infinity) && !(range.hi < infinity)) return Verdict::unknown;
-  // The field itself is rounded to float; what is that close to 0 is better looked at.
-  const double largest = std::max(std::abs(range.lo), std::abs(range.hi));
-  const double guard = largest < infinity ? 1e-6 * largest : 0.0;
-  if (range.lo > guard) return Verdict::empty;
-  if (range.hi < -guard && within) return Verdict::empty;
-  return Verdict::mixed;
+  return true;
 }
 
-// Appends the nodes that may hold surface, in Morton order.
-void collect_nodes(const Field& field, const FieldGrid& grid, const Index& corner, unsigned side,
-                   std::vector<Node>& nodes) {
-  for (unsigned a = 0; a < 3; ++a)
-    if (corner[a] >= grid.grid.size[a]) return;
-  if (judge(field, grid, corner, side) == Verdict::empty) return;
-  if (side == kNode) {
-    nodes.push_back({corner});
-    return;
+// From the root of the grid to bricks, all cubes of one size together. Keeps the order.
+class Descent {
+ public:
+  Descent(const Field& field, const FieldGrid& grid) : field_(field), grid_(grid), batches_(wants_batches(field)) {}
+
+  // Leaves out the cubes of this side on which f keeps its sign.
+  void sift(Cubes& cubes, unsigned side) {
+    std::erase_if(cubes, [&](const GridCube& c) { return c.side == side && !meets_bounds(grid_, c); });
+    boxes_.clear();
+    for (const GridCube& c : cubes)
+      if (c.side == side) boxes_.push_back(box_of(grid_, c));
+    ranges_.resize(boxes_.size());
+    if (!boxes_.empty()) field_.enclose(boxes_, ranges_);
+    std::size_t kept = 0, next = 0;
+    for (GridCube& c : cubes) {
+      if (c.side == side) {
+        const Verdict verdict = judge(ranges_[next++], c);
+        if (verdict == Verdict::empty) continue;
+        c.unknown = verdict == Verdict::unknown;
+      }
+      cubes[kept++] = c;
+    }
+    cubes.resize(kept);
   }
-  const unsigned half = side / 2;
-  for (unsigned c = 0; c < 8; ++c)
-    collect_nodes(field, grid,
-                  {corner[0] + (c & 1) * half, corner[1] + (c >> 1 & 1) * half, corner[2] + (c >> 2) * half}, half,
-                  nodes);
+
+  // Cuts the cubes of this side into eight, except unknown ones of at most `largest` cells: a field that says nothing
+  // of a cube will hardly say more of its parts.
+  void split(Cubes& cubes, unsigned side, unsigned largest) {
+    parts_.clear();
+    for (const GridCube& c : cubes) {
+      if (c.side != side || (c.unknown && side <= largest)) {
+        parts_.push_back(c);
+        continue;
+      }
+      const unsigned half = side / 2;
+      for (unsigned p = 0; p < 8; ++p)
+        parts_.push_back(
+            {{c.corner[0] + (p & 1) * half, c.corner[1] + (p >> 1 & 1) * half, c.corner[2] + (p >> 2) * half}, half});
+    }
+    cubes.swap(parts_);
+  }
+
+ private:
+  Verdict judge(const Interval& range, const GridCube& cube) const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const bool below = range.lo > -infinity, above = range.hi < infinity;
+    if (!below && !above) return Verdict::unknown;
+    // The field itself is rounded to float; what is that close to 0 is better looked at.
+    const double largest = std::max(std::abs(range.lo), std::abs(range.hi));
+    const double guard = largest < infinity ? 1e-6 * largest : 0.0;
+    if (range.lo > guard) return Verdict::empty;
+    if (range.hi < -guard && grid_.within(cube)) return Verdict::empty;
+    // One bound alone may be that of a box around a field which tells nothing.
+    return batches_ && !(below && above) ? Verdict::unknown : Verdict::mixed;
+  }
+
+  const Field& field_;
+  const FieldGrid& grid_;
+  bool batches_;
+  Cubes parts_;
+  std::vector<Box> boxes_;
+  std::vector<Interval> ranges_;
+};
+
+// The nodes that may hold surface, in Morton order.
+Cubes collect_nodes(const Field& field, const FieldGrid& grid) {
+  unsigned side = kNode;
+  while (side < *std::max_element(grid.grid.size.begin(), grid.grid.size.end())) side *= 2;
+  Cubes cubes{{{0, 0, 0}, side}};
+  Descent descent(field, grid);
+  descent.sift(cubes, side);
+  for (; side > kNode; side /= 2) {
+    descent.split(cubes, side, 0);
+    descent.sift(cubes, side / 2);
+  }
+  return cubes;
 }
 
 struct Worker {
   TileScanner scanner;
   RootFinder roots;
   std::vector<Bracket> brackets;
+  Cubes cubes;
 
-  void descend(const Field& field, const FieldGrid& grid, const Index& corner, unsigned side, FieldPart& part) {
-    for (unsigned a = 0; a < 3; ++a)
-      if (corner[a] >= grid.grid.size[a]) return;
-    const Verdict verdict = judge(field, grid, corner, side);
-    if (verdict == Verdict::empty) return;
-    // A field that says nothing of this cube will hardly say more of its parts.
-    if (side == brick_size || (side == 32 && verdict == Verdict::unknown)) {
-      scanner.scan(field, grid, corner, side, brackets, part);
-      return;
-    }
-    const unsigned half = side / 2;
-    for (unsigned c = 0; c < 8; ++c)
-      descend(field, grid, {corner[0] + (c & 1) * half, corner[1] + (c >> 1 & 1) * half, corner[2] + (c >> 2) * half},
-              half, part);
-  }
-
-  void sample(const Field& whole, const FieldGrid& grid, const Node& node, FieldPart& part) {
-    brackets.clear();
-    const std::shared_ptr<const Field> local = whole.specialized(cube(grid, node.corner, kNode));
+  void sample(const Field& whole, const FieldGrid& grid, std::span<const GridCube> nodes, FieldPart& part) {
+    const bool batches = wants_batches(whole);
+    const auto local = batches ? nullptr : whole.specialized(box_of(grid, nodes[0]));
     const Field& field = local ? *local : whole;
-    const unsigned half = kNode / 2;
-    for (unsigned c = 0; c < 8; ++c)
-      descend(field, grid,
-              {node.corner[0] + (c & 1) * half, node.corner[1] + (c >> 1 & 1) * half, node.corner[2] + (c >> 2) * half},
-              half, part);
+    cubes.assign(nodes.begin(), nodes.end());
+    Descent descent(field, grid);
+    for (unsigned side = kNode; side > brick_size; side /= 2) {
+      // Larger cubes share fewer points with their neighbours, smaller ones stay in the cache.
+      descent.split(cubes, side, batches ? kNode : kNode / 2);
+      descent.sift(cubes, side / 2);
+    }
+    brackets.clear();
+    scanner.scan(field, grid, cubes, brackets, part);
     roots.find(field, grid, brackets, part);
   }
 };
+
+// How many nodes a thread takes at once: one, for which the field is specialized, or so many that calls are few.
+std::size_t nodes_per_task(const Field& field, std::size_t nodes) {
+  return wants_batches(field) ? std::clamp<std::size_t>(nodes / 4, 1, kMostNodes) : 1;
+}
 
 SampleSet join_parts(const Grid& grid, std::vector<FieldPart>& parts, const Run& run) {
   SampleSet set;
@@ -134,14 +176,14 @@ SampleSet join_parts(const Grid& grid, std::vector<FieldPart>& parts, const Run&
 
 SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, const Run& run) {
   const FieldGrid field_grid = make_field_grid(grid, bounds);
-  unsigned side = kNode;
-  while (side < *std::max_element(grid.size.begin(), grid.size.end())) side *= 2;
-  std::vector<Node> nodes;
-  collect_nodes(field, field_grid, {0, 0, 0}, side, nodes);
-  std::vector<FieldPart> parts(nodes.size());
-  parallel_for(run, nodes.size(), 1, [&](std::size_t begin, std::size_t end) {
+  const Cubes nodes = collect_nodes(field, field_grid);
+  const std::size_t step = nodes_per_task(field, nodes.size());
+  std::vector<FieldPart> parts((nodes.size() + step - 1) / step);
+  parallel_for(run, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     Worker worker;
-    for (std::size_t i = begin; i < end; ++i) worker.sample(field, field_grid, nodes[i], parts[i]);
+    for (std::size_t i = begin; i < end; ++i)
+      worker.sample(field, field_grid, std::span(nodes).subspan(i * step, std::min(step, nodes.size() - i * step)),
+                    parts[i]);
   });
   SampleSet set = join_parts(grid, parts, run);
   mark_axes(set, run);

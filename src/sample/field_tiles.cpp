@@ -54,54 +54,99 @@ FieldGrid make_field_grid(const Grid& grid, const Box& bounds) {
   return result;
 }
 
-// Evaluates f at all points of the tile, z fastest; false when all of them are outside, or inside and within the
-// bounds.
-bool TileScanner::evaluate(const Field& field, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
-                           unsigned side) {
-  points_ = side + 1;
-  const std::size_t count = std::size_t{points_} * points_ * points_;
-  x_.resize(count), y_.resize(count), z_.resize(count), f_.resize(count);
-  inside_.resize(count + 8);
-  // One line along z, then one sheet of lines along y, then all sheets.
-  const std::size_t sheet = std::size_t{points_} * points_;
-  for (unsigned j = 0; j < points_; ++j) {
-    std::copy_n(&grid.coordinate[2][corner[2]], points_, &z_[j * points_]);
-    std::fill_n(&y_[j * points_], points_, grid.coordinate[1][corner[1] + j]);
-  }
-  for (unsigned i = 0; i < points_; ++i) {
-    std::fill_n(&x_[i * sheet], sheet, grid.coordinate[0][corner[0] + i]);
-    if (i == 0) continue;
-    std::copy_n(&y_[0], sheet, &y_[i * sheet]);
-    std::copy_n(&z_[0], sheet, &z_[i * sheet]);
-  }
-  field.evaluate({x_, y_, z_}, f_);
-  const auto [any, all] = mark_inside(f_.data(), inside_.data(), count);
-  bool within = true;
+bool FieldGrid::within(const GridCube& cube) const {
+  bool all = true;
   for (unsigned a = 0; a < 3; ++a)
-    within = within && grid.within(a, static_cast<std::int32_t>(corner[a])) &&
-             grid.within(a, static_cast<std::int32_t>(corner[a] + side));
-  return any && !(all && within);
+    all = all && within(a, static_cast<std::int32_t>(cube.corner[a])) &&
+          within(a, static_cast<std::int32_t>(cube.corner[a] + cube.side));
+  return all;
 }
 
-void TileScanner::scan(const Field& field, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
-                       unsigned side, std::vector<Bracket>& brackets, FieldPart& part) {
-  if (!evaluate(field, grid, corner, side)) return;
-  const std::uint64_t bricks = std::uint64_t{side / 8} * (side / 8) * (side / 8);
-  for (std::uint64_t b = 0; b < bricks; ++b) {
-    const auto brick = morton_decode(b);
-    scan_brick(grid, corner, {brick[0] * 8u, brick[1] * 8u, brick[2] * 8u}, brackets, part);
+// Points beyond the bounds are outside, so of them only those are needed at which an edge ends.
+TileScanner::Tile TileScanner::tile_of(const GridCube& cube, const FieldGrid& grid) {
+  Tile tile;
+  tile.cube = cube;
+  for (unsigned a = 0; a < 3; ++a) {
+    const auto corner = static_cast<std::int32_t>(cube.corner[a]);
+    const std::int32_t skipped = std::max(grid.first[a] - 1 - corner, 0) / 8 * 8;
+    const std::int32_t top = std::min(corner + static_cast<std::int32_t>(cube.side), grid.last[a] + 1);
+    tile.start[a] = static_cast<std::uint32_t>(corner + skipped);
+    tile.points[a] = static_cast<std::uint32_t>(std::max(top - corner - skipped + 1, 1));
+  }
+  return tile;
+}
+
+// Lays out as many cubes as one evaluation takes; returns the number of their points.
+std::size_t TileScanner::collect(const FieldGrid& grid, std::span<const GridCube> cubes, std::size_t batch) {
+  tiles_.clear();
+  std::size_t count = 0;
+  for (const GridCube& cube : cubes) {
+    Tile tile = tile_of(cube, grid);
+    if (!tiles_.empty() && count + tile.count() > batch) break;
+    tile.at = count, count += tile.count();
+    tiles_.push_back(tile);
+  }
+  if (x_.size() < count) {
+    for (std::vector<float>* v : {&x_, &y_, &z_, &f_}) v->resize(count);
+    inside_.resize(count + 8);
+  }
+  return count;
+}
+
+// One line along z, then one sheet of lines along y, then all sheets.
+void TileScanner::place(const Tile& tile, const FieldGrid& grid) {
+  const auto [nx, ny, nz] = tile.points;
+  const std::size_t sheet = std::size_t{ny} * nz;
+  float *x = &x_[tile.at], *y = &y_[tile.at], *z = &z_[tile.at];
+  for (std::size_t j = 0; j < ny; ++j) {
+    std::copy_n(&grid.coordinate[2][tile.start[2]], nz, z + j * nz);
+    std::fill_n(y + j * nz, nz, grid.coordinate[1][tile.start[1] + j]);
+  }
+  for (std::size_t i = 0; i < nx; ++i) {
+    std::fill_n(x + i * sheet, sheet, grid.coordinate[0][tile.start[0] + i]);
+    if (i == 0) continue;
+    std::copy_n(y, sheet, y + i * sheet);
+    std::copy_n(z, sheet, z + i * sheet);
   }
 }
 
-void TileScanner::scan_brick(const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
-                             const std::array<std::uint32_t, 3>& offset, std::vector<Bracket>& brackets,
-                             FieldPart& part) {
+// Marks what is inside; false when all points are outside, or inside and within the bounds.
+bool TileScanner::has_border(const Tile& tile, const FieldGrid& grid) {
+  const auto [any, all] = mark_inside(&f_[tile.at], &inside_[tile.at], tile.count());
+  return any && !(all && grid.within(tile.cube));
+}
+
+void TileScanner::scan(const Field& field, const FieldGrid& grid, std::span<const GridCube> cubes,
+                       std::vector<Bracket>& brackets, FieldPart& part) {
+  for (; !cubes.empty(); cubes = cubes.subspan(tiles_.size())) {
+    const std::size_t n = collect(grid, cubes, field.batch_size());
+    for (const Tile& tile : tiles_) place(tile, grid);
+    field.evaluate({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)}, std::span(f_).first(n));
+    for (const Tile& tile : tiles_) {
+      if (!has_border(tile, grid)) continue;
+      const std::uint64_t side = tile.cube.side / 8;
+      for (std::uint64_t b = 0; b < side * side * side; ++b) {
+        std::array<std::uint32_t, 3> start{};
+        bool seen = true;
+        for (unsigned a = 0; a < 3; ++a) {
+          start[a] = tile.cube.corner[a] + morton_decode(b)[a] * 8u;
+          seen = seen && start[a] >= tile.start[a] && start[a] < tile.start[a] + tile.points[a];
+        }
+        if (seen) scan_brick(tile, grid, start, brackets, part);
+      }
+    }
+  }
+}
+
+void TileScanner::scan_brick(const Tile& tile, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
+                             std::vector<Bracket>& brackets, FieldPart& part) {
   std::array<std::int32_t, 3> start{};
-  for (unsigned a = 0; a < 3; ++a) start[a] = static_cast<std::int32_t>(corner[a] + offset[a]);
+  for (unsigned a = 0; a < 3; ++a) start[a] = static_cast<std::int32_t>(corner[a]);
   unsigned within_k = 0;
   for (int k = 0; k < 9; ++k) within_k |= grid.within(2, start[2] + k) ? 1u << k : 0u;
-  const std::size_t stride[3] = {std::size_t{points_} * points_, points_, 1};
-  const std::size_t base = offset[0] * stride[0] + offset[1] * stride[1] + offset[2];
+  const std::size_t stride[3] = {std::size_t{tile.points[1]} * tile.points[2], tile.points[2], 1};
+  std::size_t base = tile.at;
+  for (unsigned a = 0; a < 3; ++a) base += (corner[a] - tile.start[a]) * stride[a];
   // Inside along z, in the bits of mask[i][j]; points beyond the bounds are outside.
   unsigned mask[9][9];
   bool within_j[9];
@@ -110,9 +155,12 @@ void TileScanner::scan_brick(const FieldGrid& grid, const std::array<std::uint32
   for (unsigned i = 0; i < 9; ++i) {
     const bool within_i = grid.within(0, start[0] + static_cast<int>(i));
     for (unsigned j = 0; j < 9; ++j) {
-      const std::uint8_t* bytes = &inside_[base + i * stride[0] + j * stride[1]];
-      const unsigned bits = pack_bytes(bytes) | static_cast<unsigned>(bytes[8]) << 8;
-      mask[i][j] = within_i && within_j[j] ? bits & within_k : 0u;
+      // Bytes beyond the end of a line are another one's; they lie beyond the bounds.
+      mask[i][j] = 0;
+      if (within_i && within_j[j]) {
+        const std::uint8_t* bytes = &inside_[base + i * stride[0] + j * stride[1]];
+        mask[i][j] = (pack_bytes(bytes) | static_cast<unsigned>(bytes[8]) << 8) & within_k;
+      }
       any |= mask[i][j], all &= mask[i][j];
     }
   }

@@ -18,12 +18,6 @@ Box room_of(const Grid& grid) {
   return {grid.point(0.5, 0.5, 0.5), grid.point(grid.size[0] - 1.5, grid.size[1] - 1.5, grid.size[2] - 1.5)};
 }
 
-Box common(const Box& a, const Box& b) {
-  Box box;
-  for (int i = 0; i < 3; ++i) box.lo[i] = std::max(a.lo[i], b.lo[i]), box.hi[i] = std::min(a.hi[i], b.hi[i]);
-  return box;
-}
-
 SampleSet sample_any(const Shape& shape, const Grid& grid, const Box& bounds, Run& run);
 
 /// An operand may reach beyond the grid, or be unbounded.

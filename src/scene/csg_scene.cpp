@@ -169,18 +169,15 @@ class CsgReader {
   Solid intersection(const CsgNode& n, const Around& around) const {
     std::vector<Shape> parts;
     bool nothing = false;
-    Box common;
+    Box box;
     for (const CsgNode& child : n.children) {
       if (child.left_out) continue;
       Solid part = node(child, around);
       if (!part) nothing = true;
       if (nothing) continue;  // the others are still checked
-      if (parts.empty()) common = part->bounds;
-      nothing = apart(common, part->bounds);
-      for (int i = 0; i < 3; ++i) {
-        common.lo[i] = std::max(common.lo[i], part->bounds.lo[i]);
-        common.hi[i] = std::min(common.hi[i], part->bounds.hi[i]);
-      }
+      if (parts.empty()) box = part->bounds;
+      nothing = apart(box, part->bounds);
+      box = common(box, part->bounds);
       parts.push_back(std::move(*part));
     }
     if (nothing || parts.empty()) return {};

@@ -29,6 +29,13 @@ class AffineField final : public Field {
     }
   }
   Interval evaluate(const Box& box) const override { return field_->evaluate(transformed_box(box, back_)); }
+  void enclose(std::span<const Box> boxes, std::span<Interval> ranges) const override {
+    std::vector<Box> moved;
+    moved.reserve(boxes.size());
+    for (const Box& box : boxes) moved.push_back(transformed_box(box, back_));
+    field_->enclose(moved, ranges);
+  }
+  std::size_t batch_size() const override { return field_->batch_size(); }
   double evaluate(const Vec3& point, Vec3* g) const override {
     const double value = field_->evaluate(back_(point), g);
     if (g) *g = gradient(*g);
@@ -97,15 +104,12 @@ class BoxedField final : public Field {
       (wall.axis == 0 ? dx : wall.axis == 1 ? dy : dz)[i] = static_cast<float>(wall.sign);
     }
   }
-  Interval evaluate(const Box& box) const override {
-    Interval range = field_->evaluate(box);
-    double lo = -std::numeric_limits<double>::infinity(), hi = lo;
-    for (int a = 0; a < 3; ++a) {
-      lo = std::max({lo, box_.lo[a] - box.hi[a], box.lo[a] - box_.hi[a]});
-      hi = std::max({hi, box_.lo[a] - box.lo[a], box.hi[a] - box_.hi[a]});
-    }
-    return {std::max(range.lo, lo), std::max(range.hi, hi)};
+  Interval evaluate(const Box& box) const override { return within_walls(field_->evaluate(box), box); }
+  void enclose(std::span<const Box> boxes, std::span<Interval> ranges) const override {
+    field_->enclose(boxes, ranges);
+    for (std::size_t i = 0; i < boxes.size(); ++i) ranges[i] = within_walls(ranges[i], boxes[i]);
   }
+  std::size_t batch_size() const override { return field_->batch_size(); }
   double evaluate(const Vec3& point, Vec3* gradient) const override {
     const double value = field_->evaluate(point, gradient);
     const Wall wall = wall_near(point, box_);
@@ -121,6 +125,14 @@ class BoxedField final : public Field {
   bool has_gradient() const override { return field_->has_gradient(); }
 
  private:
+  Interval within_walls(const Interval& range, const Box& box) const {
+    double lo = -std::numeric_limits<double>::infinity(), hi = lo;
+    for (int a = 0; a < 3; ++a) {
+      lo = std::max({lo, box_.lo[a] - box.hi[a], box.lo[a] - box_.hi[a]});
+      hi = std::max({hi, box_.lo[a] - box.lo[a], box.hi[a] - box_.hi[a]});
+    }
+    return {std::max(range.lo, lo), std::max(range.hi, hi)};
+  }
   Wall wall_at(const PointBatch& points, std::size_t i) const {
     return wall_near({points.x[i], points.y[i], points.z[i]}, box_);
   }

@@ -9,6 +9,8 @@
 
 #include "evenmesh/error.h"
 #include "evenmesh/solid.h"
+#include "shape/inside_points.h"
+#include "shape/probed_bounds.h"
 
 namespace evenmesh {
 namespace {
@@ -25,36 +27,81 @@ Box octant(const Box& box, int index) {
   return part;
 }
 
-/// True when f ≥ 0 is proved on the box; gives up where the solid shows itself, or at the last subdivision.
-bool proved_outside(const Field& field, const Box& box, int depth) {
-  if (field.evaluate(box).lo >= 0) return true;
-  if (depth == 0 || field.evaluate(box.center(), nullptr) < 0) return false;
-  for (int i = 0; i < 8; ++i)
-    if (!proved_outside(field, octant(box, i), depth - 1)) return false;
-  return true;
-}
+/// A box that may still be cut into eight so many times.
+struct Cell {
+  Box box;
+  int depth = 0;
+};
 
-/// Calls visit(cell) for the 56 cells of side `half` between the cubes of half sides `half` and 2·half; stops at false.
-template <typename Visit>
-bool each_shell_cell(double half, const Visit& visit) {
-  for (int c = 0; c < 64; ++c) {
-    const std::array<int, 3> index{c & 3, c >> 2 & 3, c >> 4};
-    if (std::all_of(index.begin(), index.end(), [](int i) { return i == 1 || i == 2; })) continue;
-    const Vec3 lo = half * Vec3{index[0] - 2.0, index[1] - 2.0, index[2] - 2.0};
-    if (!visit(Box{lo, lo + half * Vec3{1, 1, 1}})) return false;
+/// Depth first, in order, through the cells on which f ≥ 0 is not proved, except those with skip(box); stops when
+/// undecided(cells) is false. One cell after the other or, for fields that want batches, thousands together.
+template <typename Skip, typename Undecided>
+bool each_undecided(const Field& field, std::vector<Cell> cells, const Skip& skip, const Undecided& undecided) {
+  const std::size_t together = wants_batches(field) ? 4096 : 1;
+  std::vector<Cell> some;
+  std::vector<Box> boxes;
+  std::vector<Interval> ranges;
+  std::reverse(cells.begin(), cells.end());
+  while (!cells.empty()) {
+    some.clear(), boxes.clear();
+    for (; !cells.empty() && some.size() < together; cells.pop_back())
+      if (!skip(cells.back().box)) some.push_back(cells.back()), boxes.push_back(cells.back().box);
+    if (some.empty()) continue;
+    ranges.resize(boxes.size());
+    field.enclose(boxes, ranges);
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < some.size(); ++i)
+      if (!(ranges[i].lo >= 0)) some[left++] = some[i];
+    some.resize(left);
+    if (!undecided(some)) return false;
+    for (auto cell = some.rbegin(); cell != some.rend(); ++cell)
+      for (int i = 7; i >= 0 && cell->depth > 0; --i) cells.push_back({octant(cell->box, i), cell->depth - 1});
   }
   return true;
 }
 
+/// How many of the cells have their middle inside.
+std::size_t middles_inside(const Field& field, const std::vector<Cell>& cells) {
+  const auto is_negative = [](auto f) { return f < 0; };
+  if (!wants_batches(field))
+    return static_cast<std::size_t>(std::count_if(
+        cells.begin(), cells.end(), [&](const Cell& cell) { return field.evaluate(cell.box.center(), nullptr) < 0; }));
+  if (cells.empty()) return 0;
+  std::vector<float> x, y, z, values(cells.size());
+  for (const Cell& cell : cells) {
+    const Vec3 p = cell.box.center();
+    x.push_back(static_cast<float>(p.x)), y.push_back(static_cast<float>(p.y)), z.push_back(static_cast<float>(p.z));
+  }
+  field.evaluate(PointBatch{x, y, z}, values);
+  return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), is_negative));
+}
+
+/// True when f ≥ 0 is proved on the cells; gives up where the solid shows itself, or at the last subdivision.
+bool proved_outside(const Field& field, std::vector<Cell> cells) {
+  return each_undecided(
+      field, std::move(cells), [](const Box&) { return false; },
+      [&](const std::vector<Cell>& some) {
+        return std::none_of(some.begin(), some.end(), [](const Cell& cell) { return cell.depth == 0; }) &&
+               middles_inside(field, some) == 0;
+      });
+}
+
+/// The 56 cells of side `half` between the cubes of half sides `half` and 2·half.
+std::vector<Cell> cells_of_shell(double half) {
+  std::vector<Cell> cells;
+  for (int c = 0; c < 64; ++c) {
+    const std::array<int, 3> index{c & 3, c >> 2 & 3, c >> 4};
+    if (std::all_of(index.begin(), index.end(), [](int i) { return i == 1 || i == 2; })) continue;
+    const Vec3 lo = half * Vec3{index[0] - 2.0, index[1] - 2.0, index[2] - 2.0};
+    cells.push_back({{lo, lo + half * Vec3{1, 1, 1}}, shell_depth});
+  }
+  return cells;
+}
+
 [[noreturn]] void throw_unbounded(const Field& field) {
-  int inside = 0, cells = 0;
-  each_shell_cell(std::ldexp(1.0, largest_exponent - 1), [&](const Box& cell) {
-    ++cells;
-    inside += field.evaluate(cell.center(), nullptr) < 0 ? 1 : 0;
-    return true;
-  });
+  const std::vector<Cell> cells = cells_of_shell(std::ldexp(1.0, largest_exponent - 1));
   std::string message = "the solid does not seem to be bounded; give --bounds x0,y0,z0,x1,y1,z1";
-  if (inside == cells)
+  if (middles_inside(field, cells) == cells.size())
     message += ", or flip the sign: f < 0 is inside, and f is negative everywhere far from the origin";
   throw UnusableInput(message);
 }
@@ -63,68 +110,41 @@ bool each_shell_cell(double half, const Visit& visit) {
 double half_side_of_cube(const Field& field) {
   for (int exponent = largest_exponent; exponent > smallest_exponent; --exponent) {
     const double half = std::ldexp(1.0, exponent - 1);
-    if (each_shell_cell(half, [&](const Box& cell) { return proved_outside(field, cell, shell_depth); })) continue;
+    if (proved_outside(field, cells_of_shell(half))) continue;
     if (exponent == largest_exponent) throw_unbounded(field);
     return 2 * half;
   }
   return std::ldexp(1.0, smallest_exponent);
 }
 
-/// Adds the points of a grid with `steps` cells along each side where f < 0.
-void add_inside_points(const Field& field, const Box& box, int steps, Box& found) {
-  const std::size_t row = static_cast<std::size_t>(steps) + 1;
-  std::vector<float> x(row), y(row), z(row), values(row);
-  const Vec3 step = box.size() / steps;
-  for (std::size_t i = 0; i < row; ++i) x[i] = static_cast<float>(box.lo.x + step.x * static_cast<double>(i));
-  for (std::size_t k = 0; k < row; ++k) {
-    std::fill(z.begin(), z.end(), static_cast<float>(box.lo.z + step.z * static_cast<double>(k)));
-    for (std::size_t j = 0; j < row; ++j) {
-      std::fill(y.begin(), y.end(), static_cast<float>(box.lo.y + step.y * static_cast<double>(j)));
-      field.evaluate(PointBatch{x, y, z}, values);
-      for (std::size_t i = 0; i < row; ++i)
-        if (values[i] < 0) found.add({x[i], y[i], z[i]});
-    }
-  }
-}
-
 /// Adds the cells of the last subdivision on which f ≥ 0 is not proved. Cells within `found` cannot add anything.
-void add_possible_cells(const Field& field, const Box& box, int depth, Box& found) {
-  if (found.contains(box.lo) && found.contains(box.hi)) return;
-  if (field.evaluate(box).lo >= 0) return;
-  if (depth == 0) {
-    found.add(box.lo);
-    found.add(box.hi);
-    return;
-  }
-  for (int i = 0; i < 8; ++i) add_possible_cells(field, octant(box, i), depth - 1, found);
-}
-
-Box intersection(const Box& a, const Box& b) {
-  Box c;
-  for (int axis = 0; axis < 3; ++axis)
-    c.lo[axis] = std::max(a.lo[axis], b.lo[axis]), c.hi[axis] = std::min(a.hi[axis], b.hi[axis]);
-  return c;
+void add_possible_cells(const Field& field, const Box& box, Box& found) {
+  each_undecided(
+      field, {{box, shrink_depth}}, [&](const Box& cell) { return found.contains(cell.lo) && found.contains(cell.hi); },
+      [&](const std::vector<Cell>& some) {
+        for (const Cell& cell : some)
+          if (cell.depth == 0) found.add(cell.box.lo), found.add(cell.box.hi);
+        return true;
+      });
 }
 
 }  // namespace
 
 Box find_bounds(const Field& field) {
+  if (!knows_intervals(field)) return probed_bounds(field);
   const double half = half_side_of_cube(field);
   Box box{{-half, -half, -half}, {half, half, half}};
   for (int round = 0; round < 40; ++round) {
-    Box found;
-    add_inside_points(field, box, 32, found);
+    Box found = inside_points(field, box, {32, 32, 32}).box;
     const bool seen = !found.empty();
-    add_possible_cells(field, box, shrink_depth, found);
+    add_possible_cells(field, box, found);
     if (found.empty()) break;
     const Vec3 old_size = box.size(), size = found.size();
     const bool rest = size.x > enough * old_size.x && size.y > enough * old_size.y && size.z > enough * old_size.z;
     const Vec3 cell = (rest ? 1.0 : 0.25) / 64 * old_size;
-    box = intersection(Box{found.lo - cell, found.hi + cell}, Box{box.lo - cell, box.hi + cell});
+    box = common(Box{found.lo - cell, found.hi + cell}, Box{box.lo - cell, box.hi + cell});
     if (!rest) continue;
-    Box inside;
-    if (!seen) add_inside_points(field, box, 128, inside);
-    if (!seen && inside.empty()) break;
+    if (!seen && inside_points(field, box, {128, 128, 128}).inside == 0) break;
     return box;
   }
   throw UnusableInput(
@@ -144,9 +164,7 @@ Box common_bounds(const std::vector<Shape>& operands) {
   Box box{{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
   std::string reason;
   for (const Shape& operand : operands) try {
-      const Box other = find_bounds(operand);
-      for (int a = 0; a < 3; ++a)
-        box.lo[a] = std::max(box.lo[a], other.lo[a]), box.hi[a] = std::min(box.hi[a], other.hi[a]);
+      box = common(box, find_bounds(operand));
     } catch (const UnusableInput& error) {
       reason = error.what();
     }

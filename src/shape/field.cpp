@@ -1,7 +1,9 @@
 #include "shape/field.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <vector>
 
 namespace evenmesh {
 namespace {
@@ -29,12 +31,40 @@ void differentiate_axis(const Field& field, const PointBatch& points, int axis, 
   }
 }
 
+/// The same bits by as few calls as possible: each point's star of seven in one.
+void differentiate_at_once(const Field& field, const PointBatch& points, float step, std::span<float> values,
+                           const std::array<std::span<float>, 3>& derivative) {
+  const std::array<std::span<const float>, 3> coordinates{points.x, points.y, points.z};
+  const std::size_t most = std::max<std::size_t>(field.batch_size() / 7, chunk);
+  std::array<std::vector<float>, 3> star;
+  std::vector<float> f;
+  for (std::size_t begin = 0; begin < values.size(); begin += most) {
+    const std::size_t n = std::min(most, values.size() - begin);
+    f.resize(7 * n);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto at = coordinates[a].subspan(begin, n);
+      star[a].resize(7 * n);
+      for (std::size_t s = 0; s < 7; ++s) std::copy(at.begin(), at.end(), &star[a][s * n]);
+      for (std::size_t i = 0; i < n; ++i) {
+        star[a][(1 + 2 * a) * n + i] = at[i] + step;
+        star[a][(2 + 2 * a) * n + i] = at[i] - step;
+      }
+    }
+    field.evaluate({star[0], star[1], star[2]}, f);
+    std::copy_n(f.begin(), n, &values[begin]);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t i = 0, up = (1 + 2 * a) * n, down = up + n; i < n; ++i, ++up, ++down)
+        derivative[a][begin + i] = (f[up] - f[down]) / (star[a][up] - star[a][down]);
+  }
+}
+
 }  // namespace
 
 void Field::evaluate_gradient(const PointBatch& points, std::span<float> values, std::span<float> dx,
                               std::span<float> dy, std::span<float> dz) const {
-  evaluate(points, values);
   const float step = static_cast<float>(epsilon());
+  if (wants_batches(*this)) return differentiate_at_once(*this, points, step, values, {dx, dy, dz});
+  evaluate(points, values);
   differentiate_axis(*this, points, 0, step, dx);
   differentiate_axis(*this, points, 1, step, dy);
   differentiate_axis(*this, points, 2, step, dz);

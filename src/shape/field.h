@@ -54,4 +54,9 @@ class Field {
   virtual bool has_gradient() const { return true; }
 };
 
+/// Whether a call costs as much as many points: then it pays to ask for all that is known to be needed at once.
+inline bool wants_batches(const Field& field) {
+  return field.batch_size() > 1024;
+}
+
 }  // namespace evenmesh

@@ -314,12 +314,24 @@ TEST(ExpressionField, SpecializedFieldsHaveTheSameBits) {
 }
 
 /// A field that has nothing but values, for the defaults of the base class.
-class Bare final : public Field {
+class Bare : public Field {
  public:
   using Field::evaluate;
   void evaluate(const PointBatch& points, std::span<float> values) const override {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = points.x[i] * points.y[i] + 3 * points.z[i];
   }
+};
+
+/// The same, asked as seldom as possible.
+class Batched final : public Bare {
+ public:
+  using Field::evaluate;
+  void evaluate(const PointBatch& points, std::span<float> values) const override {
+    ++calls;
+    Bare::evaluate(points, values);
+  }
+  std::size_t batch_size() const override { return 7 * 500; }
+  mutable int calls = 0;
 };
 
 TEST(Field, DefaultsDifferentiateAndKnowNothingElse) {
@@ -336,6 +348,20 @@ TEST(Field, DefaultsDifferentiateAndKnowNothingElse) {
   EXPECT_NEAR(norm(gradient - Vec3{2, 1, 3}), 0, 0.05);
   EXPECT_EQ(field.evaluate(cube).lo, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(field.specialized(cube), nullptr);
+  EXPECT_EQ(field.batch_size(), 1024u);
+  const std::vector<Box> boxes(3, cube);
+  std::vector<Interval> ranges(3);
+  field.enclose(boxes, ranges);
+  EXPECT_EQ(ranges[2].hi, std::numeric_limits<double>::infinity());
+}
+
+TEST(Field, DifferentiatesInFewCallsWithTheSameBits) {
+  const Points points = random_points(cube, 1200, 31);
+  const testing::Gradients a = testing::gradients_at(Bare{}, points);
+  const Batched batched;
+  const testing::Gradients b = testing::gradients_at(batched, points);
+  EXPECT_TRUE(a.values == b.values && a.dx == b.dx && a.dy == b.dy && a.dz == b.dz);
+  EXPECT_EQ(batched.calls, 3);
 }
 
 }  // namespace
