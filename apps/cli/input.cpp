@@ -22,8 +22,6 @@ struct PlannedKind {
   std::string_view extension, what;
 };
 constexpr std::array planned_kinds{
-    PlannedKind{".glsl", "reading a distance function in GLSL"},
-    PlannedKind{".frag", "reading a distance function in GLSL"},
     PlannedKind{".vdb", "reading an OpenVDB volume"},
     PlannedKind{".nii", "reading a NIfTI volume"},
     PlannedKind{".nii.gz", "reading a NIfTI volume"},
@@ -51,6 +49,10 @@ bool names_a_scene(const std::string& name) {
   return is_scene(name, head_of(name));
 }
 
+bool names_a_shader(const std::string& name) {
+  return !name.starts_with(gallery_prefix) && is_glsl(name, head_of(name));
+}
+
 /// Refuses inputs that are documented but not built yet, unless the file holds a mesh under a misleading name.
 void refuse_planned_kinds(const std::string& name) {
   const auto kind = std::find_if(planned_kinds.begin(), planned_kinds.end(),
@@ -71,11 +73,26 @@ void check_file(const std::string& command, const std::string& name) {
         fmt::format("{} takes a mesh file, {} is a scene; make a mesh of it first: evenmesh mesh {} -o x.ply", command,
                     name, name));
   }
+  if (names_a_shader(name)) {
+    throw InvalidInput(
+        fmt::format("{} takes a mesh file, {} is a shader; make a mesh of it first: evenmesh mesh {} -o x.ply", command,
+                    name, name));
+  }
   refuse_planned_kinds(name);
 }
 
-Shape read_one(const std::string& name, Run& run) {
+Shape read_shader(const std::string& name, const InputArguments& input, const Box& bounds) {
+  return read_glsl(name, {.entry = input.entry,
+                          .definitions = input.definitions,
+                          .lipschitz = input.lipschitz,
+                          .level = input.level,
+                          .bounds = bounds,
+                          .device = input.gl_device});
+}
+
+Shape read_one(const std::string& name, const InputArguments& input, const Box& bounds, Run& run) {
   if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
+  if (names_a_shader(name)) return read_shader(name, input, bounds);
   if (names_a_scene(name)) return read_scene(name, run);
   if (is_dexel_file(head_of(name))) return shape_from_dexels(read_dexels(name, run), name);
   refuse_planned_kinds(name);
@@ -101,7 +118,7 @@ void check_input(const InputArguments& input, const InputCount& count) {
   const std::size_t given = input.positional.size() + input.expressions.size();
   if (given == 0) {
     throw InvalidInput(
-        "no input; name a mesh file, a scene, '-' for standard input, gallery:NAME, or an expression after -e");
+        "no input; name a mesh file, a scene, a shader, '-' for standard input, gallery:NAME, or an expression after -e");
   }
   if (given < count.least) {
     throw InvalidInput(fmt::format("{} input where {} or more are needed", given, count.least));
@@ -115,18 +132,29 @@ void check_input(const InputArguments& input, const InputCount& count) {
   if (std::count(input.positional.begin(), input.positional.end(), "-") > 1) {
     throw InvalidInput("only one of the inputs can come from standard input");
   }
-  if (input.expressions.empty() && !input.parameters.empty()) {
-    throw InvalidInput("-D gives a parameter of an expression; it needs an expression after -e");
+  const bool shader = std::any_of(input.positional.begin(), input.positional.end(), names_a_shader);
+  if (input.expressions.empty() && !shader && !input.definitions.empty()) {
+    throw InvalidInput("-D gives a parameter of an expression or a shader; it needs an expression after -e, or a .glsl file");
+  }
+  if (!shader && (input.entry != InputArguments{}.entry || input.lipschitz || input.level != 0)) {
+    throw InvalidInput("--entry, --lipschitz and --level are for shaders; no input is a .glsl file");
   }
 }
 
 std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, Run& run) {
   std::vector<Shape> shapes;
-  for (const std::string& name : input.positional) shapes.push_back(read_one(name, run));
+  for (const std::string& name : input.positional) shapes.push_back(read_one(name, input, bounds, run));
   for (const std::string& expression : input.expressions) {
-    shapes.push_back(shape_from_expression(expression, input.parameters, bounds));
+    shapes.push_back(shape_from_expression(expression, parameters_of(input), bounds));
   }
   return shapes;
+}
+
+std::map<std::string, double> parameters_of(const InputArguments& input) {
+  std::map<std::string, double> parameters;
+  for (const auto& [name, text] : input.definitions)
+    parameters[name] = real_number(fmt::format("-D {}=", name), text);
+  return parameters;
 }
 
 }  // namespace evenmesh::cli

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -18,7 +19,11 @@ namespace evenmesh::cli {
 struct InputArguments {
   std::vector<std::string> positional;       ///< file, "-", or "gallery:NAME"
   std::vector<std::string> expressions;      ///< -e
-  std::map<std::string, double> parameters;  ///< -D
+  std::map<std::string, std::string> definitions;  ///< -D
+  std::string entry = "map";                       ///< --entry, of GLSL files, as all below
+  std::optional<double> lipschitz;                 ///< --lipschitz
+  double level = 0;                                ///< --level
+  std::string gl_device;                           ///< --gl-device
 };
 
 /// How many inputs a command takes.
@@ -26,11 +31,14 @@ struct InputCount {
   std::size_t least = 1, most = 1;
 };
 
-/// @throws InvalidInput  too few inputs, too many, or parameters without an expression
+/// @throws InvalidInput  too few inputs, too many, or options of expressions and shaders without one
 void check_input(const InputArguments& input, const InputCount& count = {});
 
+/// The parameters of expressions among the definitions. @throws InvalidInput  one is not a number
+std::map<std::string, double> parameters_of(const InputArguments& input);
+
 /// The shapes that the checked arguments name: files and built-in shapes first, then expressions.
-/// @param bounds  of the expressions, empty: to be found
+/// @param bounds  of expressions and shaders, empty: to be found
 /// @throws InvalidInput   an expression or name that is wrong
 /// @throws NotAvailable   an input kind that this version does not contain
 /// @throws UnusableInput  a file that cannot be read

@@ -28,7 +28,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// Options that are documented but not built yet: never silently ignored.
 void refuse_planned_options(const MeshingArguments& a) {
   if (!a.error.empty()) not_available("--error");
-  if (!a.entry.empty()) not_available("--entry");
   choice("--backend", a.backend, {"cpu"}, {"gl"});
   if (a.density == "curvature" || std::filesystem::exists(a.density)) not_available("--density " + a.density);
 }
@@ -81,7 +80,7 @@ MeshOptions mesh_options(const MeshingArguments& a) {
           fmt::format("--tolerance takes a number above 0 and below 1; {} is out of range", a.tolerance));
     }
   }
-  if (a.density != "uniform") options.density = density_from_expression(a.density, a.input.parameters);
+  if (a.density != "uniform") options.density = density_from_expression(a.density, parameters_of(a.input));
   options.seed = whole_number("--seed", a.seed, 0);
   return options;
 }
@@ -100,7 +99,10 @@ Json options_json(const MeshingArguments& a, const Operation& operation, unsigne
     given("input", a.input.positional[0]);
   }
   for (const auto& [name, value] : operation.options) json[name] = value;
-  for (const auto& [name, value] : a.input.parameters) json["parameters"][name] = value;
+  for (const auto& [name, value] : a.input.definitions) json["parameters"][name] = value;
+  if (a.entry != "map") json["entry"] = a.entry;
+  given("lipschitz", a.lipschitz);
+  given("level", a.level);
   given("output", a.output);
   given("vertices", a.vertices);
   given("edge_length", a.edge_length);
@@ -144,8 +146,18 @@ struct Plan {
   Talk talk = Talk::normal;
 };
 
+void read_input_options(MeshingArguments& a) {
+  for (const std::string& text : a.definitions) a.input.definitions.insert(definition("-D", text));
+  a.input.entry = a.entry, a.input.gl_device = a.gl_device;
+  if (!a.lipschitz.empty()) {
+    a.input.lipschitz = real_number("--lipschitz", a.lipschitz);
+    if (!(*a.input.lipschitz > 0)) throw InvalidInput("--lipschitz takes a number above 0; a distance has 1");
+  }
+  if (!a.level.empty()) a.input.level = real_number("--level", a.level);
+}
+
 Plan check(MeshingArguments& a, const Operation& operation) {
-  for (const std::string& text : a.definitions) a.input.parameters.insert(definition("-D", text));
+  read_input_options(a);
   check_input(a.input, operation.inputs);
   refuse_planned_options(a);
   Plan plan;

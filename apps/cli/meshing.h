@@ -26,7 +26,9 @@ struct MeshingArguments {
   std::string thickness, outliers, dump_shell;
   std::vector<std::string> regularize;  ///< "global", radius
   std::string max_cycle;
-  std::string error, dump_dexels, entry;  ///< documented, not available yet
+  std::string dump_dexels;
+  std::string entry = "map", lipschitz, level, gl_device;
+  std::string error;  ///< documented, not available yet
   bool quiet = false, verbose = false;
   bool wrap = false;
 };

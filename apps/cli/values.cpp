@@ -84,13 +84,12 @@ Box box(const std::string& option, const std::string& text) {
   return result;
 }
 
-std::pair<std::string, double> definition(const std::string& option, const std::string& text) {
+std::pair<std::string, std::string> definition(const std::string& option, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw InvalidInput(fmt::format("{} takes name=value, for instance {} a=0.5, not '{}'", option, option, text));
   }
-  const std::string name = text.substr(0, equals);
-  return {name, real_number(fmt::format("{} {}=", option, name), text.substr(equals + 1))};
+  return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
 std::size_t choice(const std::string& option, const std::string& text, const std::vector<std::string>& allowed,

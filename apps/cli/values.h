@@ -28,7 +28,7 @@ std::vector<double> real_numbers(const std::string& option, const std::string& t
 Box box(const std::string& option, const std::string& text);
 
 /// "name=value". @throws InvalidInput
-std::pair<std::string, double> definition(const std::string& option, const std::string& text);
+std::pair<std::string, std::string> definition(const std::string& option, const std::string& text);
 
 /// The index of `text` among `allowed`.
 /// @throws NotAvailable when it is among `planned`, InvalidInput when it is neither

@@ -20,7 +20,8 @@ struct GlslOptions {
   /// No two values differ by more than this times the distance of their points (1 for an exact distance, > 0); lets
   /// boxes without surface be skipped. A value too small loses pieces of the surface. Unset: nothing is known.
   std::optional<double> lipschitz{};
-  Box bounds{};  ///< where the surface is sought, model units; empty: ±1 sets the scale of numerical derivatives
+  double level = 0;  ///< the surface is where the function has this value, and inside is what is below
+  Box bounds{};      ///< where the surface is sought, model units; empty: ±1 sets the scale of numerical derivatives
   /// "" for the best, "0", "1", … by number, "software" for llvmpipe, or a part of the renderer's name.
   std::string device{};
 };

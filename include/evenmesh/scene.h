@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "evenmesh/glsl.h"
 #include "evenmesh/run.h"
 #include "evenmesh/shape.h"
 
@@ -30,7 +31,7 @@ bool is_scene(std::string_view name, std::string_view first_bytes);
 /// @throws UnusableInput  one sentence that names the file and where in it: the path of the JSON member
 ///         ("union[1].transform.scale"), or line and column. Missing files, unknown, missing or contradicting keys,
 ///         wrong types, too deep, too large, nothing solid in it
-/// @throws NotAvailable   a documented node that this version does not contain (glsl, dexels)
+/// @throws NotAvailable   a documented node that this version does not contain 
 /// Guarantee: any sequence of bytes either gives a shape or throws; only regular files are opened.
 /// Cost: O(bytes) time and memory, and that of the files it names; nothing is combined before the shape is sampled.
 Shape read_scene(const std::filesystem::path& path, Run& run = Run::silent());
@@ -40,5 +41,10 @@ Shape read_scene(const std::filesystem::path& path, Run& run = Run::silent());
 /// @param folder  that relative paths start from
 Shape parse_scene(std::string_view bytes, std::string_view name, const std::filesystem::path& folder,
                   Run& run = Run::silent(), const SceneLimits& limits = {});
+
+/// A shader file, as shape_from_glsl() takes its text.
+/// @param path  a file, or "-" for standard input
+/// @throws UnusableInput  the file cannot be read; and as shape_from_glsl
+Shape read_glsl(const std::filesystem::path& path, const GlslOptions& options = {});
 
 }  // namespace evenmesh

@@ -70,18 +70,19 @@ struct GlslField::Device {
   }
 };
 
-GlslField::GlslField(std::shared_ptr<Context> context, GlslSource source, double scale, std::optional<double> lipschitz)
+GlslField::GlslField(std::shared_ptr<Context> context, GlslSource source, const FieldTraits& traits)
     : source_(std::move(source)),
       context_(std::move(context)),
       device_(std::make_unique<Device>()),
-      scale_(std::exp2(std::floor(std::log2(std::clamp(scale, 1e-30, 1e30))))),
-      lipschitz_(lipschitz) {
+      scale_(std::exp2(std::floor(std::log2(std::clamp(traits.scale, 1e-30, 1e30))))),
+      lipschitz_(traits.lipschitz) {
   const std::string text = shader_text(source_);
   try {
     context_->run([&] {
       device_->program = Program::compute(context_, text, source_.text.name);
       device_->program.set("em_two", 2);
       device_->program.set("em_scale", static_cast<float>(scale_));
+      device_->program.set("em_level", static_cast<float>(traits.level));
       device_->late = Buffer<std::uint32_t>(context_, 1);
       device_->late.fill_with_zeros();
     });

@@ -12,6 +12,12 @@
 
 namespace evenmesh::gl {
 
+struct FieldTraits {
+  double scale = 1;                   ///< typical size of the solid, model units
+  double level = 0;                   ///< what is subtracted from the function
+  std::optional<double> lipschitz{};  ///< see GlslOptions
+};
+
 /// Values come from one program in 32-bit floats, gradients from six more values each: central differences with steps
 /// of 2^-10 to 2^-11 of the point's largest coordinate, or of `scale` if that is larger. Where f is smooth, of size
 /// about `scale`, gradients are good to some 1e-4.
@@ -22,10 +28,8 @@ namespace evenmesh::gl {
 class GlslField final : public Field {
  public:
   /// Compiles; cost about 0.1 s.
-  /// @param scale      typical size of the solid, model units
-  /// @param lipschitz  see GlslOptions
   /// @throws UnusableInput  what the driver says, at its place in the user's text
-  GlslField(std::shared_ptr<Context> context, GlslSource source, double scale, std::optional<double> lipschitz);
+  GlslField(std::shared_ptr<Context> context, GlslSource source, const FieldTraits& traits);
   ~GlslField() override;
 
   void evaluate(const PointBatch& points, std::span<float> values) const override;

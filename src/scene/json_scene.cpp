@@ -188,14 +188,17 @@ class JsonReader {
     return at(given, [&] { return workshop_.placed(gallery_shape(name), placement); });
   }
 
+  /// Empty where none are given.
+  static Box bounds_of(const JsonPlace& place) {
+    if (!place.has("bounds")) return {};
+    const JsonPlace six = place.member("bounds");
+    const auto b = six.numbers<6>();
+    if (!(b[0] < b[3] && b[1] < b[4] && b[2] < b[5])) six.refuse("needs x0 < x1, y0 < y1 and z0 < z1");
+    return {{b[0], b[1], b[2]}, {b[3], b[4], b[5]}};
+  }
+
   Shape read_implicit(const JsonPlace& place, const Affine* placement, std::size_t) const {
-    Box bounds;
-    if (place.has("bounds")) {
-      const JsonPlace six = place.member("bounds");
-      const auto b = six.numbers<6>();
-      bounds = {{b[0], b[1], b[2]}, {b[3], b[4], b[5]}};
-      if (!(b[0] < b[3] && b[1] < b[4] && b[2] < b[5])) six.refuse("needs x0 < x1, y0 < y1 and z0 < z1");
-    }
+    const Box bounds = bounds_of(place);
     std::map<std::string, double> parameters;
     if (place.has("parameters")) {
       const JsonPlace list = place.member("parameters");
@@ -207,8 +210,35 @@ class JsonReader {
     return at(expression, [&] { return workshop_.placed(shape_from_expression(text, parameters, bounds), placement); });
   }
 
-  Shape read_glsl(const JsonPlace& place, const Affine*, std::size_t) const {
-    throw NotAvailable(place.member("glsl").prefix() + "GLSL in scenes is not available in this version");
+  /// Values of uniforms and macros: numbers, lists of numbers, or texts.
+  static std::map<std::string, std::string> definitions_of(const JsonPlace& list) {
+    std::map<std::string, std::string> definitions;
+    if (!list.value().is_object()) list.refuse("needs an object of numbers, lists of numbers or texts");
+    for (const auto& [name, value] : list.value().items()) {
+      const JsonPlace given = list.member(name.c_str());
+      std::string& text = definitions[name];
+      if (value.is_string()) {
+        text = given.text();
+      } else if (value.is_array()) {
+        for (std::size_t i = 0; i < value.size(); ++i)
+          text += fmt::format("{}{}", i == 0 ? "" : ",", given.element(i).number());
+      } else {
+        text = fmt::format("{}", given.number());
+      }
+    }
+    return definitions;
+  }
+
+  Shape read_shader(const JsonPlace& place, const Affine* placement, std::size_t) const {
+    GlslOptions options;
+    options.bounds = bounds_of(place);
+    if (place.has("entry")) options.entry = place.member("entry").text();
+    if (place.has("lipschitz")) options.lipschitz = place.member("lipschitz").number();
+    if (place.has("level")) options.level = place.member("level").number();
+    if (place.has("parameters")) options.definitions = definitions_of(place.member("parameters"));
+    const JsonPlace given = place.member("glsl");
+    const std::string name = given.text();
+    return at(given, [&] { return workshop_.placed(workshop_.shader_file(name, options), placement); });
   }
   Shape read_dexel_node(const JsonPlace& place, const Affine* placement, std::size_t) const {
     const JsonPlace given = place.member("dexels");
@@ -234,7 +264,7 @@ const std::vector<JsonReader::Kind>& JsonReader::kinds() {
       {"implicit", {"bounds", "parameters"}, &JsonReader::read_implicit},
       {"gallery", {}, &JsonReader::read_gallery},
       {"points", {}, &JsonReader::read_points_node},
-      {"glsl", {"entry"}, &JsonReader::read_glsl},
+      {"glsl", {"entry", "parameters", "lipschitz", "level", "bounds"}, &JsonReader::read_shader},
       {"dexels", {}, &JsonReader::read_dexel_node},
   };
   return all;

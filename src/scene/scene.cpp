@@ -73,4 +73,8 @@ Shape read_scene(const fs::path& path, Run& run) {
   return parse_scene(bytes.view(), name, path == "-" ? fs::path() : path.parent_path(), run, limits);
 }
 
+Shape read_glsl(const fs::path& path, const GlslOptions& options) {
+  return shape_from_glsl(std::string(load_file(path).view()), options, name_of_input(path));
+}
+
 }  // namespace evenmesh

@@ -63,6 +63,10 @@ Shape Workshop::dexel_file(const std::string& name) {
   });
 }
 
+Shape Workshop::shader_file(const std::string& name, const GlslOptions& options) const {
+  return read_glsl(file(name), options);
+}
+
 Shape Workshop::placed(const Shape& shape, const Affine* placement) {
   if (placement == nullptr) return shape;
   if (const Mesh* mesh = shape.mesh()) spend(mesh->triangles.size());

@@ -25,6 +25,8 @@ class Workshop {
   Shape mesh_file(const std::string& name);
   Shape point_file(const std::string& name);
   Shape dexel_file(const std::string& name);
+  /// The solid of a shader file.
+  Shape shader_file(const std::string& name, const GlslOptions& options) const;
 
   /// The shape moved; `placement` nullptr: where it is.
   Shape placed(const Shape& shape, const Affine* placement);

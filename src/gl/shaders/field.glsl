@@ -8,6 +8,7 @@ layout(std430, binding = 1) writeonly restrict buffer EmValues { float em_values
 layout(std430, binding = 2) restrict buffer EmLate { uint em_late[]; };                 // line of a loop that did not end
 
 uniform uint em_count;
+uniform float em_level;
 uniform int em_two;  // 2
 uniform float em_scale;  // a power of two: steps are at least 1/1024 of it
 
@@ -26,7 +27,7 @@ void main() {
     uint axis = (row - 1u) >> 1;
     p += vec3(axis == 0u ? to : 0.0, axis == 1u ? to : 0.0, axis == 2u ? to : 0.0);
   }
-  float value = em_first(EM_ENTRY(p));
+  float value = em_first(EM_ENTRY(p)) - em_level;
   // llvmpipe leaves all loops after 65,535 rounds of a group of points, and says nothing: then this one stops early.
   int canary = 0;
   while (canary < em_two) ++canary;
