@@ -110,6 +110,12 @@ class RootFinder {
   std::vector<float> x_, y_, z_, f_, dx_, dy_, dz_;
 };
 
+/// Bricks without samples that the surface goes on into from bricks with samples.
+///
+/// A brick's samples tell the signs at its grid points and those one step beyond; where the ones on a face differ, the
+/// surface goes through it. @param fresh  the parts from this one on are looked at
+std::vector<GridCube> torn_bricks(std::span<const FieldPart> parts, std::size_t fresh, const Run& run);
+
 /// Samples where f changes its sign on the grid and within the bounds (empty: the grid's), without sources.
 SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, const Run& run);
 

@@ -4,6 +4,7 @@
 
 #include "sample/blocks.h"
 #include "sample/field_parts.h"
+#include "sample/morton.h"
 
 namespace evenmesh {
 namespace {
@@ -132,8 +133,11 @@ struct Worker {
       descent.split(cubes, side, batches ? kNode : kNode / 2);
       descent.sift(cubes, side / 2);
     }
+    scan(field, grid, cubes, part);
+  }
+  void scan(const Field& field, const FieldGrid& grid, std::span<const GridCube> where, FieldPart& part) {
     brackets.clear();
-    scanner.scan(field, grid, cubes, brackets, part);
+    scanner.scan(field, grid, where, brackets, part);
     roots.find(field, grid, brackets, part);
   }
 };
@@ -143,33 +147,57 @@ std::size_t nodes_per_task(const Field& field, std::size_t nodes) {
   return wants_batches(field) ? std::clamp<std::size_t>(nodes / 4, 1, kMostNodes) : 1;
 }
 
-SampleSet join_parts(const Grid& grid, std::vector<FieldPart>& parts, const Run& run) {
+SampleSet join_parts(const Grid& grid, const std::vector<FieldPart>& parts, const Run& run) {
   SampleSet set;
   set.grid = grid;
-  std::vector<std::size_t> start;
-  std::size_t count = 0;
-  for (const FieldPart& part : parts) {
-    start.push_back(count);
-    for (SampleBlock block : part.blocks) {
-      block.begin += static_cast<std::uint32_t>(count), block.end += static_cast<std::uint32_t>(count);
-      set.blocks.push_back(block);
-    }
-    count += part.x.size();
-    set.cut_by_bounds = set.cut_by_bounds || part.cut_by_bounds;
+  struct Piece {
+    std::uint64_t code;
+    std::size_t part;
+    SampleBlock block;
+  };
+  std::vector<Piece> pieces;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    for (const SampleBlock& b : parts[p].blocks)
+      pieces.push_back({morton_code(b.brick[0], b.brick[1], b.brick[2]), p, b});
+    set.cut_by_bounds = set.cut_by_bounds || parts[p].cut_by_bounds;
+  }
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.code < b.code; });
+  std::uint32_t count = 0;
+  for (const Piece& piece : pieces) {
+    SampleBlock block = piece.block;
+    block.begin = count, count += piece.block.end - piece.block.begin, block.end = count;
+    set.blocks.push_back(block);
   }
   resize_samples(set, count, false, run);
-  parallel_for(run, parts.size(), 4, [&](std::size_t begin, std::size_t end) {
+  parallel_for(run, pieces.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      FieldPart& part = parts[i];
-      const auto copy = [at = static_cast<std::ptrdiff_t>(start[i])](const auto& from, auto& to) {
-        std::copy(from.begin(), from.end(), to.begin() + at);
+      const FieldPart& part = parts[pieces[i].part];
+      const auto copy = [&](const auto& from, auto& to) {
+        std::copy(from.begin() + pieces[i].block.begin, from.begin() + pieces[i].block.end,
+                  to.begin() + set.blocks[i].begin);
       };
       copy(part.x, set.x), copy(part.y, set.y), copy(part.z, set.z), copy(part.area, set.area);
       copy(part.normal, set.normal), copy(part.edge, set.edge);
-      part = {};
     }
   });
   return set;
+}
+
+// Where the field's word of what is empty was wrong, the surface is followed; pieces that lie apart stay unseen.
+void follow(const Field& field, const FieldGrid& grid, std::vector<FieldPart>& parts, const Run& run) {
+  constexpr std::size_t most = 4096;  // bricks of a part
+  for (std::size_t fresh = 0; fresh < parts.size();) {
+    const Cubes torn = torn_bricks(parts, fresh, run);
+    fresh = parts.size();
+    parts.resize(fresh + (torn.size() + most - 1) / most);
+    parallel_for(run, parts.size() - fresh, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Worker worker;
+        worker.scan(field, grid, std::span(torn).subspan(i * most, std::min(most, torn.size() - i * most)),
+                    parts[fresh + i]);
+      }
+    });
+  }
 }
 
 }  // namespace
@@ -185,6 +213,7 @@ SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, 
       worker.sample(field, field_grid, std::span(nodes).subspan(i * step, std::min(step, nodes.size() - i * step)),
                     parts[i]);
   });
+  if (!field.encloses_surely()) follow(field, field_grid, parts, run);
   SampleSet set = join_parts(grid, parts, run);
   mark_axes(set, run);
   if (!field.has_gradient()) fit_normals(set, run);
