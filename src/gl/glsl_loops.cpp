@@ -15,7 +15,7 @@ class Rewriter {
     std::size_t line = 1, offset = 0;
     for (std::size_t i = 0; i < t_.size(); ++i) {
       if (!t_[i].is("for") && !t_[i].is("while")) continue;
-      for (; offset < t_[i].offset; ++offset) line += text_.text[offset] == '\n';
+      for (; offset < t_[i].offset; ++offset) line += ends_line(text_, offset);
       line_ = line;
       if (t_[i].is("for")) {
         for_loop(i);

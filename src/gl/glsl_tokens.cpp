@@ -161,12 +161,14 @@ std::vector<GlslToken> tokenize_macro(const GlslText& text, std::string_view bod
   return Scanner(text, body, &offset).run();
 }
 
+bool ends_line(const GlslText& text, std::size_t offset) {
+  const char c = text.text[offset];
+  return c == '\n' || (c == '\r' && (offset + 1 == text.text.size() || text.text[offset + 1] != '\n'));
+}
+
 std::size_t glsl_line(const GlslText& text, std::size_t offset) {
-  const std::string_view before = std::string_view(text.text).substr(0, offset);
   std::size_t line = 1;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    line += before[i] == '\n' || (before[i] == '\r' && (i + 1 == text.text.size() || text.text[i + 1] != '\n'));
-  }
+  for (std::size_t i = 0; i < std::min(offset, text.text.size()); ++i) line += ends_line(text, i);
   return line;
 }
 

@@ -35,6 +35,9 @@ std::vector<GlslToken> tokenize_glsl(const GlslText& text);
 /// The same for a piece of code without directives: the body of a macro. `offset` goes to all tokens.
 std::vector<GlslToken> tokenize_macro(const GlslText& text, std::string_view body, std::size_t offset);
 
+/// Whether a line ends with the character at an offset: \n, \r, or the last one of \r\n.
+bool ends_line(const GlslText& text, std::size_t offset);
+
 /// Line of an offset, from 1.
 std::size_t glsl_line(const GlslText& text, std::size_t offset);
 
