@@ -22,8 +22,8 @@ std::vector<double> volumes_within(const SurfaceParts& parts, const SampleSet& s
 /// Leaves out the parts with less than `least_area`; returns how many.
 std::size_t drop_dust(SampleSet& samples, double least_area, Run& run);
 
-/// Fills what the outside does not reach: cavities go, with all that lies in them. Returns how many parts of surface that
-/// were. Cost: as surface_parts().
+/// Fills what the outside does not reach: cavities go, with all that lies in them. Returns how many parts of surface
+/// that were. Cost: as surface_parts().
 std::size_t fill_cavities(SampleSet& samples, Run& run);
 
 }  // namespace evenmesh
