@@ -39,6 +39,7 @@ class GlslField final : public Field {
   /// where f is not finite.
   Interval evaluate(const Box& box) const override;
   void enclose(std::span<const Box> boxes, std::span<Interval> ranges) const override;
+  bool differentiates() const override { return false; }
   bool encloses_surely() const override { return false; }
   /// Slow: a dispatch, some 0.1 ms, for each point.
   double evaluate(const Vec3& point, Vec3* gradient) const override;

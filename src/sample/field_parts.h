@@ -97,7 +97,9 @@ class RootFinder {
   void evaluate(std::size_t count);
   void clip_to_bounds(std::span<Bracket> brackets);
   void first_guess(std::span<Bracket> brackets);
+  void first_values(std::span<Bracket> brackets);
   void refine(std::span<Bracket> brackets);
+  void differentiate(std::span<const Bracket> brackets, std::span<const std::uint32_t> which);
   void bisect(std::span<Bracket> brackets);
   void normalize(std::span<const Bracket> brackets);
   void append(std::span<const Bracket> brackets, std::size_t first, FieldPart& part) const;

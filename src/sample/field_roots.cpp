@@ -8,8 +8,9 @@ namespace {
 
 constexpr std::size_t kBatch = 1024;  // least points per evaluation: enough to hide its overhead, few for the cache
 constexpr float kTolerance = 1e-4f;   // cells
-constexpr float kAgreement = 1e-3f;   // cells; between Newton's and the secant's guess
-constexpr float kBeyond = 1e-3f;      // cells beyond a face of the bounds where f is asked whether it goes on
+constexpr float kRough = 1e-3f;  // cells; where values are dear, and f so rough that the chord does not find the root
+constexpr float kAgreement = 1e-3f;  // cells; between Newton's and the secant's guess
+constexpr float kBeyond = 1e-3f;     // cells beyond a face of the bounds where f is asked whether it goes on
 constexpr int kMostSteps = 40;
 constexpr int kBisections = 12;
 
@@ -62,11 +63,20 @@ void RootFinder::find_batch(std::span<Bracket> brackets, std::size_t first, Fiel
   for (std::vector<float>* v : {&x_, &y_, &z_, &f_, &dx_, &dy_, &dz_})
     if (v->size() < n) v->resize(n);
   clip_to_bounds(brackets);
-  if (field_->has_gradient()) {
-    first_guess(brackets);
-    refine(brackets);
-  } else {
+  if (!field_->has_gradient()) {
     bisect(brackets);
+  } else if (field_->differentiates()) {
+    first_guess(brackets);
+    const std::vector<std::uint32_t> stubborn = active_;
+    refine(brackets);
+    differentiate(brackets, stubborn);
+  } else {
+    first_values(brackets);
+    refine(brackets);
+    active_.clear();
+    for (std::uint32_t i = 0; i < brackets.size(); ++i)
+      if (!roots_[i].made) active_.push_back(i);
+    differentiate(brackets, active_);
   }
   normalize(brackets);
   append(brackets, first, part);
@@ -117,6 +127,31 @@ void RootFinder::clip_to_bounds(std::span<Bracket> brackets) {
   }
 }
 
+// One evaluation at the chord's root; kept is where the next chord is 0, if that is hardly elsewhere. The gradients are
+// left for the end.
+void RootFinder::first_values(std::span<Bracket> brackets) {
+  for (std::uint32_t i = 0; i < brackets.size(); ++i) {
+    if (roots_[i].made) continue;
+    roots_[i].t = chord_root(brackets[i]);
+    place(active_.size(), brackets[i], roots_[i].t);
+    active_.push_back(i);
+  }
+  evaluate(active_.size());
+  std::size_t left = 0;
+  for (std::size_t s = 0; s < active_.size(); ++s) {
+    Bracket& b = brackets[active_[s]];
+    Root& root = roots_[active_[s]];
+    narrow(b, root.t, f_[s]);
+    const float chord = chord_root(b);
+    const bool known = std::isfinite(b.f_lo) && std::isfinite(b.f_hi);
+    if (known && std::abs(chord - root.t) < kAgreement)
+      root.t = chord;
+    else
+      active_[left++] = active_[s];
+  }
+  active_.resize(left);
+}
+
 // One evaluation with gradient at the chord's root. Newton's step from there and the chord of the narrower bracket
 // enclose the root when f bends one way only; when they agree, Newton's is kept.
 void RootFinder::first_guess(std::span<Bracket> brackets) {
@@ -143,15 +178,15 @@ void RootFinder::first_guess(std::span<Bracket> brackets) {
   }
 }
 
-// The Illinois variant of regula falsi, with a bisection every third step, then the gradient at the root. Guesses keep
-// half a tolerance away from the ends, so that a root next to one end closes the bracket.
+// The Illinois variant of regula falsi, with a bisection every third step, and from the seventh on only those. Guesses
+// keep half a tolerance away from the ends, so that a root next to one end closes the bracket.
 void RootFinder::refine(std::span<Bracket> brackets) {
-  const std::vector<std::uint32_t> stubborn = active_;
+  const float tolerance = field_->differentiates() ? kTolerance : kRough;
   for (int step = 0; step < kMostSteps && !active_.empty(); ++step) {
     for (std::size_t s = 0; s < active_.size(); ++s) {
       const Bracket& b = brackets[active_[s]];
-      const float margin = std::min(0.5f * kTolerance, 0.5f * (b.t_hi - b.t_lo));
-      const float guess = step % 3 == 2 ? 0.5f * (b.t_lo + b.t_hi) : chord_root(b);
+      const float margin = std::min(0.5f * tolerance, 0.5f * (b.t_hi - b.t_lo));
+      const float guess = step % 3 == 2 || step > 5 ? 0.5f * (b.t_lo + b.t_hi) : chord_root(b);
       roots_[active_[s]].t = std::clamp(guess, b.t_lo + margin, b.t_hi - margin);
       place(s, b, roots_[active_[s]].t);
     }
@@ -164,18 +199,21 @@ void RootFinder::refine(std::span<Bracket> brackets) {
       narrow(b, root.t, f_[s]);
       // Halving the value at the end that stays draws the next chord towards it.
       (low ? b.f_hi : b.f_lo) *= 0.5f;
-      if (b.t_hi - b.t_lo > kTolerance) active_[left++] = active_[s];
+      if (b.t_hi - b.t_lo > tolerance) active_[left++] = active_[s];
     }
     active_.resize(left);
   }
-  for (std::size_t s = 0; s < stubborn.size(); ++s) place(s, brackets[stubborn[s]], roots_[stubborn[s]].t);
-  const std::size_t n = stubborn.size();
+}
+
+void RootFinder::differentiate(std::span<const Bracket> brackets, std::span<const std::uint32_t> which) {
+  const std::size_t n = which.size();
   if (n == 0) return;
+  for (std::size_t s = 0; s < n; ++s) place(s, brackets[which[s]], roots_[which[s]].t);
   field_->evaluate_gradient({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)},
                             std::span(f_).first(n), std::span(dx_).first(n), std::span(dy_).first(n),
                             std::span(dz_).first(n));
   for (std::size_t s = 0; s < n; ++s)
-    roots_[stubborn[s]].n[0] = dx_[s], roots_[stubborn[s]].n[1] = dy_[s], roots_[stubborn[s]].n[2] = dz_[s];
+    roots_[which[s]].n[0] = dx_[s], roots_[which[s]].n[1] = dy_[s], roots_[which[s]].n[2] = dz_[s];
 }
 
 void RootFinder::bisect(std::span<Bracket> brackets) {

@@ -37,6 +37,8 @@ class Field {
   virtual Interval evaluate(const Box& box) const;
   /// Encloses f over each of several boxes. The default asks for one after the other.
   virtual void enclose(std::span<const Box> boxes, std::span<Interval> ranges) const;
+  /// False where a gradient is made of seven values; true where it costs little more than one.
+  virtual bool differentiates() const { return true; }
   /// False where the enclosures are somebody's word: then the surface is followed to where they deny it.
   virtual bool encloses_surely() const { return true; }
   /// Points per call from which on the cost per point no longer falls. Fields that want many are not asked for single
