@@ -11,7 +11,7 @@ float map(vec3 p) {
   float d = 1e9;
   for (int i = 0; i < 7; ++i) {
     float t = time + 2.399963 * float(i);
-    vec3 center = vec3(cos(t), 0.7 * sin(1.3 * t), sin(t)) * (0.3 + 0.1 * float(i));
+    vec3 center = vec3(cos(t), 0.7 * sin(1.3 * t), sin(t)) * (0.25 + 0.08 * float(i));
     d = smoothUnion(d, length(p - center) - (0.42 - 0.02 * float(i)));
   }
   return d;

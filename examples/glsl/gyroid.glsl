@@ -1,6 +1,6 @@
 // A ball carved into walls along a gyroid. Its value is no distance: only where it changes its sign matters.
-uniform float period = 0.75;
-uniform float wall = 0.45;
+uniform float period = 1.3;
+uniform float wall = 0.6;
 
 float gyroid(vec3 p) { return dot(sin(p), cos(p.yzx)); }
 

@@ -1,11 +1,11 @@
 // The Mandelbulb of degree `power`: z → z^power + c in spherical coordinates, which never escapes from inside.
 uniform float power = 8.0;
-uniform int rounds = 7;
+uniform int rounds = 3;
 
 float map(vec3 p) {
   vec3 z = p;
   float dr = 1.0, r = length(z);
-  for (int i = 0; i < rounds && r < 2.0; ++i) {
+  for (int i = 0; i < rounds && r < 8.0; ++i) {
     float theta = power * acos(clamp(z.z / r, -1.0, 1.0)), phi = power * atan(z.y, z.x);
     dr = power * pow(r, power - 1.0) * dr + 1.0;
     z = pow(r, power) * vec3(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)) + p;

@@ -1,5 +1,5 @@
 // A Menger sponge of `level` levels with side 2: a cube, less three square tunnels for every cube of every level.
-uniform int level = 2;
+uniform int level = 1;
 
 float box(vec3 p, vec3 halfSize) {
   vec3 d = abs(p) - halfSize;

@@ -25,17 +25,17 @@ float unionRound(float a, float b, float r) {
 float groove(float a, float b, float depth, float width) { return max(a, min(a + depth, width - abs(b))); }
 
 float map(vec3 p) {
-  float hub = tube(p, 0.38, 0.3);
+  float hub = tube(p, 0.42, 0.3);
   vec3 q = p;
-  sectors(q.xz, 7.0);
+  sectors(q.xz, 5.0);
   q.x -= 0.85;
   rotate(q.yz, 0.5);
-  float blade = box(q, vec3(0.5, 0.035, 0.2)) - 0.02;
+  float blade = box(q, vec3(0.5, 0.06, 0.2)) - 0.06;
   float d = unionRound(hub, blade, 0.1);
-  float rim = max(abs(length(p.xz) - 1.32) - 0.06, abs(p.y) - 0.24);
+  float rim = length(vec2(max(abs(length(p.xz) - 1.32) - 0.06, 0.0), max(abs(p.y) - 0.18, 0.0))) - 0.06;
   d = unionChamfer(d, rim, 0.05);
   d = groove(d, p.y, 0.05, 0.06);
   vec3 m = p;
   mirror(m.y);
-  return max(d, -tube(m, 0.16, 1.0));
+  return max(d, -tube(m, 0.18, 1.0));
 }
