@@ -211,7 +211,9 @@ class CsgReader {
 
   Solid pulled(const CsgNode& n, const Around& around) const {
     refuse_solid_in_flat(n, around);
-    const std::optional<LinearExtrusion> how = bodies_.linear_extrusion(n);
+    Contour points;
+    for (const CsgNode& child : n.children) add_points(child, {}, points);
+    const std::optional<LinearExtrusion> how = bodies_.linear_extrusion(n, points);
     const Extrude extrude = [&](const CsgNode& leaf, const Outline& outline) {
       return how ? bodies_.pulled(leaf, outline, *how) : Mesh{};
     };
@@ -220,8 +222,10 @@ class CsgReader {
 
   Solid turned(const CsgNode& n, const Around& around) const {
     refuse_solid_in_flat(n, around);
+    Contour points;
+    for (const CsgNode& child : n.children) add_points(child, {}, points);
     double left = 0, right = 0;
-    for (const CsgNode& child : n.children) add_reach(child, {}, left, right);
+    for (const Point2& p : points) left = std::min(left, p.x), right = std::max(right, p.x);
     if (left < 0 && right > 0) {
       fail_in_csg(source_, n.at, "the flat shape lies on both sides of the axis (x = 0); move it to one side");
     }
@@ -232,15 +236,14 @@ class CsgReader {
     return extruded(n, around, extrude);
   }
 
-  /// How far flat shapes reach to both sides of the axis; what is taken away does not count.
-  void add_reach(const CsgNode& n, const std::optional<Affine>& motion, double& left, double& right) const {
+  /// The points of flat shapes; what is taken away does not count, and what cuts it off is not known.
+  void add_points(const CsgNode& n, const std::optional<Affine>& motion, Contour& points) const {
     if (n.left_out) return;
     if (CsgBodies::is_flat(n.name)) {
       const std::optional<Outline> outline = bodies_.flat(n);
       if (!outline) return;
-      for (const Contour& contour : moved(*outline, motion.value_or(Affine{})).contours) {
-        for (const Point2& p : contour) left = std::min(left, p.x), right = std::max(right, p.x);
-      }
+      for (const Contour& contour : moved(*outline, motion.value_or(Affine{})).contours)
+        points.insert(points.end(), contour.begin(), contour.end());
       return;
     }
     std::optional<Affine> inner = motion;
@@ -249,7 +252,7 @@ class CsgReader {
       inner = motion ? motion->after(own) : own;
     }
     for (const CsgNode& child : n.children) {
-      add_reach(child, inner, left, right);
+      add_points(child, inner, points);
       if (n.name == "difference" && !child.left_out) break;
     }
   }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "evenmesh/error.h"
+#include "scene/crossings.h"
 
 namespace evenmesh {
 
@@ -54,14 +55,15 @@ Contour without_repeats(const Contour& path) {
 
 Outline outline_of_paths(std::vector<Contour> paths) {
   Outline outline;
+  std::vector<Contour>& contours = outline.contours;
   for (const Contour& path : paths) {
     Contour contour = without_repeats(path);
-    if (contour.size() >= 3 && twice_area(contour) != 0) outline.contours.push_back(std::move(contour));
+    if (contour.size() >= 3) contours.push_back(std::move(contour));
   }
-  std::vector<Contour>& contours = outline.contours;
   if (contours.size() > 1 && static_cast<double>(contours.size()) * static_cast<double>(outline.points()) > 1e9) {
     throw UnusableInput("has too many paths; split the polygon");
   }
+  if (paths_meet(contours)) return untangled(contours);
   for (std::size_t i = 0; i < contours.size(); ++i) {
     bool hole = false;
     for (std::size_t j = 0; j < contours.size(); ++j)
