@@ -152,15 +152,17 @@ double way_around(double radius, double angle, double scale) {
 
 }  // namespace
 
-double slices_of(const LinearExtrusion& how, const Roundness& roundness, const Contour& points) {
+double slices_of(const LinearExtrusion& how, const Roundness& roundness, const Outline& outline) {
   const double twist = std::abs(how.twist);
   const bool even = how.scale.x == how.scale.y;
   if (twist == 0 && even) return 1;
   double radius = 0, larger = 0, shift = 0;
-  for (const Point2& p : points) {
-    radius = std::max(radius, std::hypot(p.x, p.y));
-    larger = std::max(larger, std::hypot(p.x * how.scale.x, p.y * how.scale.y));
-    shift = std::max(shift, std::hypot(p.x - p.x * how.scale.x, p.y - p.y * how.scale.y));
+  for (const Contour& contour : outline.contours) {
+    for (const Point2& p : contour) {
+      radius = std::max(radius, std::hypot(p.x, p.y));
+      larger = std::max(larger, std::hypot(p.x * how.scale.x, p.y * how.scale.y));
+      shift = std::max(shift, std::hypot(p.x - p.x * how.scale.x, p.y - p.y * how.scale.y));
+    }
   }
   if (twist == 0) {
     if (roundness.fn > 0) return std::max(std::floor(roundness.fn), 1.0);

@@ -12,7 +12,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr double most_work = 1e9;
+constexpr double most_work = 3e8;
 constexpr std::size_t most_edges = 4'000'000;  // after cutting
 constexpr std::uint32_t none = 0xffffffffu;
 
@@ -44,20 +44,18 @@ class Points {
 /// From the smaller to the larger end by x, then y.
 struct Edge {
   std::uint32_t a = 0, b = 0;
-  friend auto operator<=>(const Edge&, const Edge&) = default;
+  std::int64_t rise = 1;  ///< of the winding number from its right (below) to its left (above)
 };
 
-std::vector<Edge> edges_of(const std::vector<Contour>& paths, Points& points) {
-  std::vector<Edge> edges;
+void add_edges(const std::vector<Contour>& paths, std::int64_t weight, Points& points, std::vector<Edge>& edges) {
   for (const Contour& path : paths) {
     for (std::size_t i = 0; i < path.size(); ++i) {
-      Edge e{points.number(path[i]), points.number(path[(i + 1) % path.size()])};
+      Edge e{points.number(path[i]), points.number(path[(i + 1) % path.size()]), weight};
       if (e.a == e.b) continue;
-      if (before(points[e.b], points[e.a])) std::swap(e.a, e.b);
+      if (before(points[e.b], points[e.a])) e = {e.b, e.a, -weight};
       edges.push_back(e);
     }
   }
-  return edges;
 }
 
 /// Visits all pairs of edges whose boxes meet, sorted along one axis and tried against those that overlap there.
@@ -157,7 +155,7 @@ class Cutter {
 
  private:
   bool cut() {
-    cancel();
+    merge();
     std::vector<std::vector<std::uint32_t>> cuts(edges_.size());
     std::size_t count = 0;
     Pairs(edges_, points_).each([&](std::uint32_t i, std::uint32_t j) {
@@ -179,17 +177,19 @@ class Cutter {
     return count > 0;
   }
 
-  /// An edge that is there an even number of times borders nothing.
-  void cancel() {
-    std::sort(edges_.begin(), edges_.end());
+  /// One edge where several are the same, none where they cancel.
+  void merge() {
+    std::sort(edges_.begin(), edges_.end(),
+              [](const Edge& e, const Edge& f) { return e.a < f.a || (e.a == f.a && e.b < f.b); });
     std::vector<Edge> kept;
     for (const Edge& e : edges_) {
-      if (!kept.empty() && kept.back() == e) {
-        kept.pop_back();
+      if (!kept.empty() && kept.back().a == e.a && kept.back().b == e.b) {
+        kept.back().rise += e.rise;
       } else {
         kept.push_back(e);
       }
     }
+    std::erase_if(kept, [](const Edge& e) { return e.rise == 0; });
     edges_ = std::move(kept);
   }
 
@@ -215,7 +215,7 @@ class Cutter {
     cuts.push_back(e.b);
     for (const std::uint32_t to : cuts) {
       if (to == from) continue;
-      pieces.push_back(before(points_[from], points_[to]) ? Edge{from, to} : Edge{to, from});
+      pieces.push_back(before(points_[from], points_[to]) ? Edge{from, to, e.rise} : Edge{to, from, -e.rise});
       from = to;
     }
   }
@@ -225,11 +225,13 @@ class Cutter {
   double step_ = 0;
 };
 
-/// Walks along edges that meet at their ends only, the inside to the left. An even number of them ends in every point,
-/// and around it inside and outside alternate.
+/// Walks along the border of a region among edges that meet at their ends only, the region to the left.
+/// @tparam Inside  whether a winding number belongs to the region
+template <typename Inside>
 class Walker {
  public:
-  Walker(const std::vector<Edge>& edges, const Points& points) : edges_(edges), points_(points) {
+  Walker(const std::vector<Edge>& edges, const Points& points, Inside inside)
+      : edges_(edges), points_(points), inside_(inside) {
     around_.resize(points.size());
     for (std::uint32_t i = 0; i < edges.size(); ++i) {
       around_[edges[i].a].push_back(i);
@@ -239,53 +241,64 @@ class Walker {
   }
 
   Outline run() {
-    direct();
+    wind();
     Outline outline;
     std::vector<bool> done(edges_.size());
     for (std::uint32_t first = 0; first < edges_.size(); ++first) {
-      if (done[first]) continue;
-      Contour& contour = outline.contours.emplace_back();
+      if (done[first] || !border(first)) continue;
+      Contour contour;
       for (std::uint32_t e = first; !done[e]; e = next(e)) {
         done[e] = true;
-        contour.push_back(points_[forward_[e] ? edges_[e].a : edges_[e].b]);
+        contour.push_back(points_[forward(e) ? edges_[e].a : edges_[e].b]);
       }
+      contour = without_straight_points(contour);
+      if (contour.size() >= 3) outline.contours.push_back(std::move(contour));
     }
     return outline;
   }
 
  private:
+  std::int64_t above(std::uint32_t e) const { return below_[e] + edges_[e].rise; }
+  bool border(std::uint32_t e) const { return inside_(below_[e]) != inside_(above(e)); }
+  bool forward(std::uint32_t e) const { return inside_(above(e)); }  ///< a border is walked from a to b
+
   std::uint32_t other_end(std::uint32_t e, std::uint32_t v) const {
     return edges_[e].a == v ? edges_[e].b : edges_[e].a;
   }
 
-  /// Counter-clockwise, beginning where edges are "forward" in their order, upwards.
+  /// Counter-clockwise, those first that begin at v.
   void sort_around(std::uint32_t v) {
     std::sort(around_[v].begin(), around_[v].end(), [&](std::uint32_t e, std::uint32_t f) {
-      const std::uint32_t p = other_end(e, v), q = other_end(f, v);
-      const bool e_forward = before(points_[v], points_[p]), f_forward = before(points_[v], points_[q]);
-      if (e_forward != f_forward) return e_forward;
-      return orient2d(points_[v], points_[p], points_[q]) > 0;
+      if ((edges_[e].a == v) != (edges_[f].a == v)) return edges_[e].a == v;
+      return orient2d(points_[v], points_[other_end(e, v)], points_[other_end(f, v)]) > 0;
     });
   }
 
-  /// Clockwise from the edge along which a walk arrives, so that it stays around the same piece of inside.
-  std::uint32_t next(std::uint32_t e) const {
-    const std::uint32_t v = forward_[e] ? edges_[e].b : edges_[e].a;
-    const std::vector<std::uint32_t>& ring = around_[v];
-    const auto at = static_cast<std::size_t>(std::find(ring.begin(), ring.end(), e) - ring.begin());
-    return ring[(at + ring.size() - 1) % ring.size()];
+  static std::size_t place(const std::vector<std::uint32_t>& ring, std::uint32_t e) {
+    return static_cast<std::size_t>(std::find(ring.begin(), ring.end(), e) - ring.begin());
   }
 
-  /// One edge of each piece by counting what lies below it, the others by going around the points.
-  void direct() {
-    forward_.resize(edges_.size());
+  /// The next border clockwise from the one along which a walk arrives, so that it stays around one piece of region.
+  std::uint32_t next(std::uint32_t e) const {
+    const std::vector<std::uint32_t>& ring = around_[forward(e) ? edges_[e].b : edges_[e].a];
+    std::size_t at = place(ring, e);
+    do {
+      at = (at + ring.size() - 1) % ring.size();
+    } while (!border(ring[at]));
+    return ring[at];
+  }
+
+  /// Winding numbers below all edges: of one edge of each piece by summing up what lies below it, of the others by
+  /// going around the points.
+  void wind() {
+    below_.resize(edges_.size());
     std::vector<bool> known(edges_.size());
     std::vector<std::uint32_t> open;
     double work = 0;
     for (std::uint32_t first = 0; first < edges_.size(); ++first) {
       if (known[first]) continue;
       if ((work += static_cast<double>(edges_.size())) > most_work) refuse();
-      forward_[first] = !inside_below(edges_[first]);
+      below_[first] = winding_below(edges_[first]);
       known[first] = true;
       open.push_back(first);
       while (!open.empty()) {
@@ -296,44 +309,62 @@ class Walker {
     }
   }
 
+  /// Counter-clockwise around v, beginning behind an edge whose numbers are known.
   void spread(std::uint32_t from, std::uint32_t v, std::vector<bool>& known, std::vector<std::uint32_t>& open) {
     const std::vector<std::uint32_t>& ring = around_[v];
-    const auto at = static_cast<std::size_t>(std::find(ring.begin(), ring.end(), from) - ring.begin());
-    bool leaves = forward_[from] == (edges_[from].a == v);
+    const std::size_t at = place(ring, from);
+    std::int64_t winding = edges_[from].a == v ? above(from) : below_[from];
     for (std::size_t i = 1; i < ring.size(); ++i) {
       const std::uint32_t e = ring[(at + i) % ring.size()];
-      leaves = !leaves;
+      const bool begins = edges_[e].a == v;
+      const std::int64_t below = begins ? winding : winding - edges_[e].rise;
+      winding = begins ? winding + edges_[e].rise : below;
       if (known[e]) continue;
       known[e] = true;
-      forward_[e] = leaves == (edges_[e].a == v);
+      below_[e] = below;
       open.push_back(e);
     }
   }
 
-  /// Whether the inside is to the right of an edge, from its smaller to its larger end: an odd number of edges lies
-  /// below, just behind its smaller end.
-  bool inside_below(const Edge& e) const {
-    bool inside = false;
+  /// Below an edge, just behind its smaller end.
+  std::int64_t winding_below(const Edge& e) const {
+    std::int64_t winding = 0;
     for (const Edge& f : edges_) {
       if (before(points_[e.a], points_[f.a]) || !before(points_[e.a], points_[f.b])) continue;
-      const int side = f.a == e.a ? -orient2d(points_[e.a], points_[f.b], points_[e.b])
-                                  : -orient2d(points_[f.a], points_[f.b], points_[e.a]);
-      if (side < 0) inside = !inside;
+      const int side = f.a == e.a ? orient2d(points_[e.a], points_[f.b], points_[e.b])
+                                  : orient2d(points_[f.a], points_[f.b], points_[e.a]);
+      if (side > 0) winding += f.rise;
     }
-    return inside;
+    return winding;
+  }
+
+  static Contour without_straight_points(const Contour& contour) {
+    Contour kept;
+    for (std::size_t i = 0, n = contour.size(); i < n; ++i) {
+      if (orient2d(contour[(i + n - 1) % n], contour[i], contour[(i + 1) % n]) != 0) kept.push_back(contour[i]);
+    }
+    return kept;
   }
 
   const std::vector<Edge>& edges_;
   const Points& points_;
+  Inside inside_;
   std::vector<std::vector<std::uint32_t>> around_;  ///< edges at a point, counter-clockwise
-  std::vector<bool> forward_;                       ///< walked from a to b
+  std::vector<std::int64_t> below_;                 ///< winding numbers
 };
+
+template <typename Inside>
+Outline region(std::vector<Edge> edges, Points& points, const Inside& inside) {
+  const std::vector<Edge> cut = Cutter(std::move(edges), points).run();
+  return Walker(cut, points, inside).run();
+}
 
 }  // namespace
 
 bool paths_meet(const std::vector<Contour>& paths) {
   Points points;
-  const std::vector<Edge> edges = edges_of(paths, points);
+  std::vector<Edge> edges;
+  add_edges(paths, 1, points, edges);
   if (points.size() < edges.size()) return true;  // a point is used twice
   bool meet = false;
   Pairs(edges, points).each([&](std::uint32_t i, std::uint32_t j) {
@@ -345,9 +376,21 @@ bool paths_meet(const std::vector<Contour>& paths) {
 
 Outline untangled(const std::vector<Contour>& paths) {
   Points points;
-  std::vector<Edge> edges = edges_of(paths, points);
-  const std::vector<Edge> cut = Cutter(std::move(edges), points).run();
-  return Walker(cut, points).run();
+  std::vector<Edge> edges;
+  add_edges(paths, 1, points, edges);
+  return region(std::move(edges), points, [](std::int64_t winding) { return winding % 2 != 0; });
+}
+
+Outline combined(FlatSet set, const std::vector<Outline>& outlines) {
+  const auto count = static_cast<std::int64_t>(outlines.size());
+  Points points;
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    const bool whole = set == FlatSet::subtract && i == 0;  // outweighs all others, so that they can be told apart
+    add_edges(outlines[i].contours, whole ? count : 1, points, edges);
+  }
+  return region(std::move(edges), points,
+                [&](std::int64_t winding) { return set == FlatSet::unite ? winding > 0 : winding == count; });
 }
 
 }  // namespace evenmesh

@@ -191,7 +191,7 @@ Outline CsgBodies::polygon(const CsgNode& node) const {
 
 // Motions -------------------------------------------------------------------------------------------------------------
 
-std::optional<LinearExtrusion> CsgBodies::linear_extrusion(const CsgNode& node, const Contour& points) const {
+std::optional<LinearExtrusion> CsgBodies::linear_extrusion(const CsgNode& node, const Outline& outline) const {
   if (csg_argument(node, "file", 99)) fail_in_csg(source_, node.at, "extruding a file is not supported");
   LinearExtrusion how;
   how.up = {0, 0, number(node, "height", 0, 1)};
@@ -212,7 +212,7 @@ std::optional<LinearExtrusion> CsgBodies::linear_extrusion(const CsgNode& node, 
     if (how.scale.x < 0 || how.scale.y < 0) fail_in_csg(source_, scale->at, "must not be below 0");
   }
   const double given = number(node, "slices", 99, 0);
-  const double slices = given >= 1 ? given : slices_of(how, roundness(node), points);
+  const double slices = given >= 1 ? given : slices_of(how, roundness(node), outline);
   if (!(slices <= most_pieces)) fail_in_csg(source_, node.at, "asks for more than 1,000,000 slices");
   how.slices = static_cast<std::uint64_t>(slices);
   if (!(how.up.z > 0)) return {};

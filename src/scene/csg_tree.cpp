@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -193,6 +194,30 @@ class Parser {
 
 }  // namespace
 
+bool begins_like_csg(std::string_view text) {
+  constexpr std::array<std::string_view, 25> names{
+      "group",   "union",   "render",   "color",      "difference",     "intersection",   "multmatrix",
+      "cube",    "sphere",  "cylinder", "polyhedron", "linear_extrude", "rotate_extrude", "square",
+      "circle",  "polygon", "import",   "hull",       "minkowski",      "projection",     "text",
+      "surface", "offset",  "resize",   "roof"};
+  const auto skip = [&](std::string_view blanks) {
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  };
+  for (skip(" \t\r\n*%#!;"); text.starts_with("//") || text.starts_with("/*"); skip(" \t\r\n*%#!;")) {
+    const std::string_view end = text[1] == '/' ? "\n" : "*/";
+    const std::size_t at = text.find(end, 2);
+    if (at == std::string_view::npos) return false;
+    text.remove_prefix(at + end.size());
+  }
+  const auto name = std::find_if(names.begin(), names.end(), [&](std::string_view n) {
+    return text.starts_with(n) && text.size() > n.size() && !begins_name(text[n.size()]);
+  });
+  if (name == names.end()) return false;
+  text.remove_prefix(name->size());
+  skip(" \t\r\n");
+  return text.starts_with('(');
+}
+
 std::vector<CsgNode> parse_csg(const Source& source, std::size_t depth) {
   return Parser(source, depth).read();
 }
@@ -203,6 +228,20 @@ void fail_in_csg(const Source& source, const char* at, std::string_view what) {
   const std::size_t last = before.rfind('\n');
   const std::size_t column = before.size() - (last == std::string_view::npos ? 0 : last + 1) + 1;
   fail(source, fmt::format("line {}, column {}: {}", line, column, what));
+}
+
+bool is_csg_group(std::string_view name) {
+  return name == "group" || name == "union" || name == "render" || name == "color";
+}
+
+void refuse_csg_node(const Source& source, const CsgNode& node) {
+  constexpr std::array<std::string_view, 13> known{
+      "hull", "minkowski",  "projection", "text",       "surface",           "offset", "resize", "roof",
+      "fill", "import_stl", "import_off", "import_dxf", "dxf_linear_extrude"};
+  const bool is_known = std::find(known.begin(), known.end(), node.name) != known.end();
+  fail_in_csg(source, node.at,
+              fmt::format("{} {} is not supported; export this part as a mesh and import it",
+                          is_known ? "the OpenSCAD node" : "the unknown node", evenmesh::quoted(node.name)));
 }
 
 const CsgValue* csg_argument(const CsgNode& node, std::string_view name, std::size_t position) {

@@ -180,13 +180,37 @@ TEST_F(Csg, RotateExtrusion) {
   expect_says(refusal("rotate_extrude(angle = 0) " + square, "scene.csg"), "holds no solid");
 }
 
-TEST_F(Csg, FlatSetsAreExtrudedEach) {
+TEST_F(Csg, FlatSetsAreCombinedBeforeTheyAreExtruded) {
   const Shape shape =
       csg("linear_extrude(height = 1) { difference() { square(size = 4); multmatrix([[1,0,0,1],[0,1,0,1],[0,0,1,9],"
           "[0,0,0,1]]) { circle($fn = 20, r = 1); } } }");
-  ASSERT_NE(shape.compound(), nullptr);
-  EXPECT_EQ(shape.compound()->kind, Compound::Kind::subtract);
-  expect_box(shape.compound()->operands[1].bounds, {0, 0, 0}, {2, 2, 1}, 1e-12);
+  const double circle = polygon_area(20, 1);
+  ASSERT_NE(shape.mesh(), nullptr);
+  expect_closed(*shape.mesh(), false);  // the disc touches the sides of the square
+  EXPECT_NEAR(volume(*shape.mesh()), 16 - circle, 1e-9);
+  const auto volume_of = [&](const std::string& flat) {
+    const Shape made = csg("linear_extrude(height = 1) { " + flat + " }");
+    if (made.mesh() == nullptr) throw std::runtime_error("no mesh");
+    expect_closed(*made.mesh(), false);
+    return volume(*made.mesh());
+  };
+  const std::string square = "square(size = 4);", disc = "circle($fn = 20, r = 1);";
+  EXPECT_NEAR(volume_of(square + disc), 16 + 0.75 * circle, 1e-9) << "around a corner of the square";
+  EXPECT_NEAR(volume_of("intersection() { " + square + disc + " }"), 0.25 * circle, 1e-9);
+  EXPECT_NEAR(volume_of("difference() { " + square + disc + disc + " }"), 16 - 0.25 * circle, 1e-9);
+  EXPECT_NEAR(volume_of("union() { " + square + square + " }"), 16, 1e-9);
+  EXPECT_NEAR(volume_of(square + "multmatrix([[1,0,0,4],[0,1,0,1],[0,0,1,0],[0,0,0,1]]) { square(size = 2); }"), 20,
+              1e-9)
+      << "side by side";
+  EXPECT_NEAR(
+      volume_of("multmatrix([[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { difference() { " + square + disc + " } }"),
+      16 - 0.25 * circle, 1e-9);
+  expect_says(refusal("linear_extrude(height = 1) { difference() { " + square + square + " } }", "a.csg"), "no solid");
+  // Holes turn the diagonals of their walls: the volume is that of OpenSCAD's mesh.
+  const Shape twisted = csg(
+      "linear_extrude(height = 10, twist = 100, slices = 5) { multmatrix([[1,0,0,2],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) {"
+      "difference() { square(size = 4, center = true); square(size = 2, center = true); } } }");
+  EXPECT_NEAR(volume(only_mesh(twisted)), 133.5487, 1e-3);
 }
 
 TEST_F(Csg, MatricesMoveFromTheInsideOut) {
