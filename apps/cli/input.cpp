@@ -60,6 +60,11 @@ void refuse_planned_kinds(const std::string& name) {
   if (!head.empty() && !format_of_content(head)) not_available(fmt::format("{} ({})", kind->what, name));
 }
 
+bool names_dexels(const std::string& name) {
+  const std::string head = head_of(name);
+  return is_dexel_file(head) || (ends_with_ignoring_case(name, ".tdx") && !format_of_content(head));
+}
+
 /// Refuses what names no file, or a file that cannot be read yet.
 void check_file(const std::string& command, const std::string& name) {
   if (name.starts_with(gallery_prefix)) {
@@ -71,18 +76,34 @@ void check_file(const std::string& command, const std::string& name) {
         fmt::format("{} takes a mesh file, {} is a scene; make a mesh of it first: evenmesh mesh {} -o x.ply", command,
                     name, name));
   }
+  if (names_dexels(name)) {
+    throw InvalidInput(
+        fmt::format("{} takes a mesh file, {} holds dexels; make a mesh of it first: evenmesh mesh {} -o x.ply",
+                    command, name, name));
+  }
   refuse_planned_kinds(name);
+}
+
+Shape shape_of(std::variant<Mesh, PointCloud> contents, const std::string& title) {
+  if (auto* points = std::get_if<PointCloud>(&contents)) return shape_from_points(std::move(*points), title);
+  return shape_from_mesh(std::get<Mesh>(std::move(contents)), title);
+}
+
+/// Recognized by content alone; relative paths in a scene start from the working folder.
+Shape read_standard_input(Run& run) {
+  const std::string bytes = read_bytes("-"), title = "standard input";
+  if (is_dexel_file(bytes)) return shape_from_dexels(parse_dexels(bytes, title), title);
+  if (is_scene("-", std::string_view(bytes).substr(0, 4096))) return parse_scene(bytes, title, {}, run);
+  return shape_of(parse_mesh_or_points(bytes, title, run), title);
 }
 
 Shape read_one(const std::string& name, Run& run) {
   if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
+  if (name == "-") return read_standard_input(run);
   if (names_a_scene(name)) return read_scene(name, run);
-  if (is_dexel_file(head_of(name))) return shape_from_dexels(read_dexels(name, run), name);
+  if (names_dexels(name)) return shape_from_dexels(read_dexels(name, run), name);
   refuse_planned_kinds(name);
-  const std::string title = name == "-" ? "standard input" : name;
-  std::variant<Mesh, PointCloud> contents = read_mesh_or_points(name, run);
-  if (auto* points = std::get_if<PointCloud>(&contents)) return shape_from_points(std::move(*points), title);
-  return shape_from_mesh(std::get<Mesh>(std::move(contents)), title);
+  return shape_of(read_mesh_or_points(name, run), name);
 }
 
 }  // namespace
