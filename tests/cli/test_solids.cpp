@@ -104,7 +104,7 @@ TEST_F(Solids, OpenScadDifference) {
 
 TEST_F(Solids, OffsetsOfABall) {
   const auto made = [&](const Words& how) {
-    Words words{"offset", "-e", left_ball, "--bounds", "-2,-2,-2,2,2,2", "-n", "300", "-o", "x.ply", "-q"};
+    Words words{"offset", "-e", left_ball, "--bounds", "-2,-2,-2,2,2,2", "-n", "300", "-r", "60", "-o", "x.ply", "-q"};
     words.insert(words.end(), how.begin(), how.end());
     const Outcome outcome = run(words);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
