@@ -97,9 +97,14 @@ class Parser {
     if (p_ == source_.end() || !begins_name(*p_)) expected("a statement such as cube(size = [1, 1, 1]);");
     node.name = peek_name();
     p_ += node.name.size();
+    if (take('='))
+      fail_in_csg(source_, node.at, "a .csg file has no variables; make one with openscad -o x.csg x.scad");
     need('(', "'(' behind the name of the statement");
     arguments(node);
     if (take(';')) return node;
+    if (p_ != source_.end() && begins_name(*p_)) {
+      expected("';' or '{' behind the arguments, as openscad -o x.csg x.scad writes them");
+    }
     need('{', "';' or '{' behind the arguments");
     node.children = statements(depth + 1);
     if (!take('}'))
@@ -182,7 +187,7 @@ class Parser {
       made.kind = CsgValue::Kind::number;
       made.number = name == "inf" ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
     } else if (name != "undef") {
-      expected("a value; a .csg file has no variables, make one with openscad -o x.csg");
+      expected("a value; a .csg file has no variables, make one with openscad -o x.csg x.scad");
     }
     p_ += name.size();
   }
@@ -203,7 +208,7 @@ bool begins_like_csg(std::string_view text) {
   const auto skip = [&](std::string_view blanks) {
     text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
   };
-  for (skip(" \t\r\n*%#!;"); text.starts_with("//") || text.starts_with("/*"); skip(" \t\r\n*%#!;")) {
+  for (skip(" \t\r\n*%!;"); text.starts_with("//") || text.starts_with("/*"); skip(" \t\r\n*%!;")) {
     const std::string_view end = text[1] == '/' ? "\n" : "*/";
     const std::size_t at = text.find(end, 2);
     if (at == std::string_view::npos) return false;

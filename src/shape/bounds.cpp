@@ -53,7 +53,8 @@ bool each_shell_cell(double half, const Visit& visit) {
     inside += field.evaluate(cell.center(), nullptr) < 0 ? 1 : 0;
     return true;
   });
-  std::string message = "the solid does not seem to be bounded; give --bounds x0,y0,z0,x1,y1,z1";
+  std::string message =
+      "the solid does not seem to be bounded; give --bounds x0,y0,z0,x1,y1,z1, or \"bounds\" in a scene";
   if (inside == cells)
     message += ", or flip the sign: f < 0 is inside, and f is negative everywhere far from the origin";
   throw UnusableInput(message);

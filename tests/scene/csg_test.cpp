@@ -278,7 +278,8 @@ TEST_F(Csg, ErrorsNameLineAndColumn) {
   says("group() { cube();", "line 1, column 1: the braces of this statement are never closed");
   says("cube(); }", "line 1, column 9: '}' closes nothing");
   says("cube; ", "expected '(' behind the name");
-  says("$x = 3;", "expected '(' behind the name of the statement, found '='");
+  says("$x = 3;", "line 1, column 1: a .csg file has no variables; make one with openscad");
+  says("linear_extrude(height = 3) square(2);", "as openscad -o x.csg x.scad writes them, found 'square'");
   says("cube(\"", "never closed by a quote");
   says("/* cube();", "comment is never closed");
   says("square();", "line 1, column 1: 'square' is flat where a solid is needed");
@@ -288,6 +289,20 @@ TEST_F(Csg, ErrorsNameLineAndColumn) {
   says("polyhedron(points = [[0,0,0]], faces = [[0,1,2]]);", "is no index of a point; there are 1, counted from 0");
   says("sphere($fn = 1e9);", "asks for more than 1,000,000 pieces");
   says("sphere($fn = 1e6);", "asks for more triangles than a scene may have");
+}
+
+TEST_F(Csg, IsRecognizedByContent) {
+  for (const char* text : {"cube();", "// a\n/* b */ % group (){}", "\xef\xbb\xbf!multmatrix([[", "difference() { }"}) {
+    EXPECT_TRUE(is_scene("-", text)) << text;
+    EXPECT_TRUE(is_scene("a.txt", text)) << text;
+  }
+  for (const char* text : {"cube", "cubes();", "g cube\nv 0 0 0\n", "1 2 3\n", "# cube\n1 2 3\n", "/* cube();", ""}) {
+    EXPECT_FALSE(is_scene("-", text)) << text;
+  }
+  EXPECT_NE(parse_scene("cube();", "standard input", folder).mesh(), nullptr);
+  EXPECT_TRUE(is_scene("a.scad", "x = 3;"));
+  expect_says(refusal("cube();", "a.scad"),
+              "a.scad: is a program of OpenSCAD, which has to be evaluated first: openscad");
 }
 
 TEST_F(Csg, DepthIsLimited) {
