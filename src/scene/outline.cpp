@@ -200,6 +200,7 @@ class EarClipper {
     std::size_t left = n, at = 0, tried = 0;
     bool flat_too = false;  // corners of 180° only when nothing else is left
     while (left > 2) {
+      if (!spend(1)) return false;
       const std::size_t a = previous[at], c = next[at];
       const int turn = side(ring[a], ring[at], ring[c]);
       if ((turn > 0 && empty_ear(ring, next, a, at, c)) || (turn == 0 && flat_too)) {
@@ -210,7 +211,6 @@ class EarClipper {
         continue;
       }
       at = c;
-      if (!spend(1)) return false;
       if (++tried < left) continue;
       if (flat_too) return false;
       flat_too = true, tried = 0;
