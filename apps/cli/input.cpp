@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "evenmesh/glsl.h"
 #include "evenmesh/io.h"
 #include "evenmesh/scene.h"
 #include "values.h"
@@ -62,6 +63,11 @@ void refuse_planned_kinds(const std::string& name) {
   if (!head.empty() && !format_of_content(head)) not_available(fmt::format("{} ({})", kind->what, name));
 }
 
+bool names_dexels(const std::string& name) {
+  const std::string head = head_of(name);
+  return is_dexel_file(head) || (ends_with_ignoring_case(name, ".tdx") && !format_of_content(head));
+}
+
 /// Refuses what names no file, or a file that cannot be read yet.
 void check_file(const std::string& command, const std::string& name) {
   if (name.starts_with(gallery_prefix)) {
@@ -78,28 +84,46 @@ void check_file(const std::string& command, const std::string& name) {
         fmt::format("{} takes a mesh file, {} is a shader; make a mesh of it first: evenmesh mesh {} -o x.ply", command,
                     name, name));
   }
+  if (names_dexels(name)) {
+    throw InvalidInput(
+        fmt::format("{} takes a mesh file, {} holds dexels; make a mesh of it first: evenmesh mesh {} -o x.ply",
+                    command, name, name));
+  }
   refuse_planned_kinds(name);
 }
 
-Shape read_shader(const std::string& name, const InputArguments& input, const Box& bounds) {
-  return read_glsl(name, {.entry = input.entry,
-                          .definitions = input.definitions,
-                          .lipschitz = input.lipschitz,
-                          .level = input.level,
-                          .bounds = bounds,
-                          .device = input.gl_device});
+GlslOptions shader_options(const InputArguments& input, const Box& bounds) {
+  return {.entry = input.entry,
+          .definitions = input.definitions,
+          .lipschitz = input.lipschitz,
+          .level = input.level,
+          .bounds = bounds,
+          .device = input.gl_device};
 }
 
-Shape read_one(const std::string& name, const InputArguments& input, const Box& bounds, Run& run) {
-  if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
-  if (names_a_shader(name)) return read_shader(name, input, bounds);
-  if (names_a_scene(name)) return read_scene(name, run);
-  if (is_dexel_file(head_of(name))) return shape_from_dexels(read_dexels(name, run), name);
-  refuse_planned_kinds(name);
-  const std::string title = name == "-" ? "standard input" : name;
-  std::variant<Mesh, PointCloud> contents = read_mesh_or_points(name, run);
+Shape shape_of(std::variant<Mesh, PointCloud> contents, const std::string& title) {
   if (auto* points = std::get_if<PointCloud>(&contents)) return shape_from_points(std::move(*points), title);
   return shape_from_mesh(std::get<Mesh>(std::move(contents)), title);
+}
+
+/// Recognized by content alone; relative paths in a scene start from the working folder.
+Shape read_standard_input(const GlslOptions& shader, Run& run) {
+  const std::string bytes = read_bytes("-"), title = "standard input";
+  if (is_dexel_file(bytes)) return shape_from_dexels(parse_dexels(bytes, title), title);
+  const std::string_view head = std::string_view(bytes).substr(0, 4096);
+  if (is_scene("-", head)) return parse_scene(bytes, title, {}, run);
+  if (is_glsl("-", head)) return shape_from_glsl(bytes, shader, title);
+  return shape_of(parse_mesh_or_points(bytes, title, run), title);
+}
+
+Shape read_one(const std::string& name, const GlslOptions& shader, Run& run) {
+  if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
+  if (name == "-") return read_standard_input(shader, run);
+  if (names_a_shader(name)) return read_glsl(name, shader);
+  if (names_a_scene(name)) return read_scene(name, run);
+  if (names_dexels(name)) return shape_from_dexels(read_dexels(name, run), name);
+  refuse_planned_kinds(name);
+  return shape_of(read_mesh_or_points(name, run), name);
 }
 
 }  // namespace
@@ -118,7 +142,8 @@ void check_input(const InputArguments& input, const InputCount& count) {
   const std::size_t given = input.positional.size() + input.expressions.size();
   if (given == 0) {
     throw InvalidInput(
-        "no input; name a mesh file, a scene, a shader, '-' for standard input, gallery:NAME, or an expression after -e");
+        "no input; name a mesh file, a scene, a shader, '-' for standard input, gallery:NAME, or an expression after "
+        "-e");
   }
   if (given < count.least) {
     throw InvalidInput(fmt::format("{} input where {} or more are needed", given, count.least));
@@ -134,7 +159,8 @@ void check_input(const InputArguments& input, const InputCount& count) {
   }
   const bool shader = std::any_of(input.positional.begin(), input.positional.end(), names_a_shader);
   if (input.expressions.empty() && !shader && !input.definitions.empty()) {
-    throw InvalidInput("-D gives a parameter of an expression or a shader; it needs an expression after -e, or a .glsl file");
+    throw InvalidInput(
+        "-D gives a parameter of an expression or a shader; it needs an expression after -e, or a .glsl file");
   }
   if (!shader && (input.entry != InputArguments{}.entry || input.lipschitz || input.level != 0)) {
     throw InvalidInput("--entry, --lipschitz and --level are for shaders; no input is a .glsl file");
@@ -143,7 +169,7 @@ void check_input(const InputArguments& input, const InputCount& count) {
 
 std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, Run& run) {
   std::vector<Shape> shapes;
-  for (const std::string& name : input.positional) shapes.push_back(read_one(name, input, bounds, run));
+  for (const std::string& name : input.positional) shapes.push_back(read_one(name, shader_options(input, bounds), run));
   for (const std::string& expression : input.expressions) {
     shapes.push_back(shape_from_expression(expression, parameters_of(input), bounds));
   }
@@ -152,8 +178,7 @@ std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, R
 
 std::map<std::string, double> parameters_of(const InputArguments& input) {
   std::map<std::string, double> parameters;
-  for (const auto& [name, text] : input.definitions)
-    parameters[name] = real_number(fmt::format("-D {}=", name), text);
+  for (const auto& [name, text] : input.definitions) parameters[name] = real_number(fmt::format("-D {}=", name), text);
   return parameters;
 }
 

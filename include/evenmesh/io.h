@@ -57,6 +57,10 @@ PointCloud parse_points(std::string_view bytes, std::string_view name);
 /// Reads whichever of the two a file holds: a mesh, or points. Otherwise like read_mesh and read_points.
 std::variant<Mesh, PointCloud> read_mesh_or_points(const std::filesystem::path& path, Run& run = Run::silent());
 
+/// The same from memory; `name` is used for its extension and in messages.
+std::variant<Mesh, PointCloud> parse_mesh_or_points(std::string_view bytes, std::string_view name,
+                                                    Run& run = Run::silent());
+
 /// Writes a mesh; format by extension. PLY, STL, GLB are binary little-endian, float32 coordinates.
 /// The file appears under its name only when it is complete (temporary name, then rename).
 ///
@@ -75,13 +79,17 @@ Dexels read_dexels(const std::filesystem::path& path, Run& run = Run::silent());
 Dexels parse_dexels(std::string_view bytes, std::string_view name);
 /// The bytes of a dexel file: 96 and 16 for each crossing.
 std::string serialize_dexels(const Dexels& dexels);
-/// Whether a file begins as a dexel file does.
+/// Whether a file begins as a dexel file of any version does.
 bool is_dexel_file(std::string_view bytes);
 
 /// The bytes of an OpenVDB file with one grid of floats; its active voxels are those of the volume. They differ from
 /// call to call, since OpenVDB gives every file an identifier of its own; what they say does not.
 /// @throws InvalidInput  the side is not above 0, or there is not one value for each voxel
 std::string serialize_vdb(const SparseVolume& volume);
+
+/// All bytes of a file, pipe or device; "-" is standard input.
+/// @throws UnusableInput  one sentence with the file's name: it does not exist, is a directory, may not be read, …
+std::string read_bytes(const std::filesystem::path& path);
 
 /// Writes any text or binary file atomically: temporary name beside it, then rename.
 /// @throws UnusableInput  the file cannot be written

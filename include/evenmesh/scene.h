@@ -18,16 +18,18 @@ struct SceneLimits {
   std::size_t triangles = 100'000'000;        ///< made by the scene's own bodies, and of moved copies of meshes
 };
 
-/// Whether a file is a scene: its name ends with ".csg" or ".json", or it begins like a JSON object; neither counts
-/// where the content is that of a mesh (glTF is JSON, too).
+/// Whether a file is a scene: its name ends with ".csg" or ".json", or it begins like a JSON object or with a statement
+/// of OpenSCAD; neither counts where the content is that of a mesh (glTF is JSON, too). ".scad" counts, to be refused
+/// with a word on what to do.
 /// @param first_bytes  4096 or more of the file, or all of it
 bool is_scene(std::string_view name, std::string_view first_bytes);
 
-/// Reads a scene: JSON (docs/scenes.md, docs/scene.schema.json), or OpenSCAD's ".csg" by that extension.
+/// Reads a scene: JSON (docs/scenes.md, docs/scene.schema.json), or OpenSCAD's ".csg"; by the extension or, where it is
+/// another one, by content.
 ///
 /// Paths in it are relative to its folder. Files that are used several times are read once. Units are not converted.
 ///
-/// @param path  a file, or "-" for JSON from standard input; paths in it are then relative to the working folder
+/// @param path  a file, or "-" for standard input; paths in it are then relative to the working folder
 /// @throws UnusableInput  one sentence that names the file and where in it: the path of the JSON member
 ///         ("union[1].transform.scale"), or line and column. Missing files, unknown, missing or contradicting keys,
 ///         wrong types, too deep, too large, nothing solid in it
@@ -37,7 +39,7 @@ bool is_scene(std::string_view name, std::string_view first_bytes);
 Shape read_scene(const std::filesystem::path& path, Run& run = Run::silent());
 
 /// The same from memory.
-/// @param name    for messages; a name that ends with ".csg" stands for OpenSCAD, all others for JSON
+/// @param name    for its extension and in messages
 /// @param folder  that relative paths start from
 Shape parse_scene(std::string_view bytes, std::string_view name, const std::filesystem::path& folder,
                   Run& run = Run::silent(), const SceneLimits& limits = {});

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "evenmesh/error.h"
+#include "evenmesh/io.h"
 
 namespace evenmesh {
 namespace {

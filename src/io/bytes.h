@@ -22,9 +22,6 @@ struct FileBytes {
 /// @throws UnusableInput  one sentence with the file's name: it does not exist, is a directory, may not be read, …
 FileBytes load_file(const std::filesystem::path& path);
 
-/// The same as a string.
-std::string read_bytes(const std::filesystem::path& path);
-
 /// What messages call a path: itself, or "standard input" for "-".
 std::string name_of_input(const std::filesystem::path& path);
 

@@ -72,6 +72,9 @@ bool is_point_file(const Source& source) {
 
 MeshOrPoints read_recognized(const Source& source) {
   std::optional<MeshFormat> format = format_of_content(source.bytes);
+  if (!format && is_dexel_file(source.bytes)) {
+    fail(source, "holds dexels, not a mesh; make a mesh of it first, or name it under 'dexels' in a scene");
+  }
   if (!format && is_point_file(source)) return with_known_normals(read_point_text(source));
   if (!format) format = format_of_name(source.name);
   if (!format) {
@@ -152,6 +155,11 @@ PointCloud parse_points(std::string_view bytes, std::string_view name) {
 
 PointCloud read_points(const std::filesystem::path& path, Run& run) {
   return points_of(load(path, run), name_of_input(path));
+}
+
+std::variant<Mesh, PointCloud> parse_mesh_or_points(std::string_view bytes, std::string_view name, Run& run) {
+  run.throw_if_cancelled();
+  return with_threads(run, [&] { return parse({bytes, name, &run}); });
 }
 
 std::variant<Mesh, PointCloud> read_mesh_or_points(const std::filesystem::path& path, Run& run) {

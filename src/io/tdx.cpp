@@ -11,19 +11,25 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::string_view magic = "evenmesh dexels 1\n";
+constexpr std::string_view family = "evenmesh dexels", magic = "evenmesh dexels 1\n";
 constexpr std::size_t header_size = 96, crossing_size = 16, origin_at = 32;
 
 }  // namespace
 
 bool is_dexel_file(std::string_view bytes) {
-  return bytes.starts_with(magic);
+  return bytes.starts_with(family);
 }
 
 Dexels parse_dexels(std::string_view bytes, std::string_view name) {
   const Source source{bytes, name};
-  if (!is_dexel_file(bytes)) fail(source, "is no dexel file: it must begin with 'evenmesh dexels 1'");
-  if (bytes.size() < header_size) fail(source, "is truncated: its header has 96 bytes");
+  if (!bytes.starts_with(magic)) {
+    if (!bytes.empty() && magic.starts_with(bytes)) fail(source, "is truncated; write it again with --dump-dexels");
+    fail(source,
+         "is no dexel file of this version: it must begin with 'evenmesh dexels 1'; write it again with "
+         "--dump-dexels");
+  }
+  if (bytes.size() < header_size)
+    fail(source, "is truncated: its header has 96 bytes; write it again with --dump-dexels");
   const char* at = bytes.data() + origin_at;
   Dexels dexels;
   for (int a = 0; a < 3; ++a) dexels.origin[a] = load<double>(at + 8 * a);
@@ -32,7 +38,8 @@ Dexels parse_dexels(std::string_view bytes, std::string_view name) {
   const auto count = load<std::uint64_t>(at + 48);
   if (count != (bytes.size() - header_size) / crossing_size || (bytes.size() - header_size) % crossing_size != 0)
     fail(source,
-         fmt::format("says {} crossings, but holds {} bytes of them, 16 each", count, bytes.size() - header_size));
+         fmt::format("says {} crossings, but holds {} bytes of them, 16 each; write it again with --dump-dexels", count,
+                     bytes.size() - header_size));
   dexels.crossings.resize(count);
   at = bytes.data() + header_size;
   for (Dexels::Crossing& c : dexels.crossings) {

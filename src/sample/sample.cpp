@@ -73,7 +73,7 @@ SampleSet sample_any(const Shape& shape, const Grid& grid, const Box& bounds, Ru
 SampleSet sample_shape(const Shape& shape, const Grid& grid, Run& run) {
   SampleSet set = with_threads(run, [&] { return sample_any(shape, grid, shape.bounds, run); });
   if (set.size() == 0 && shape.compound())
-    throw UnusableInput("nothing is left of the solid: the result of the " + shape.name + " is empty");
+    throw UnusableInput("nothing is left of the solid: the result of " + shape.name + " is empty");
   if (set.size() == 0)
     throw UnusableInput(shape.name + " has no surface within its bounds: raise the resolution or check the bounds");
   return set;

@@ -1,6 +1,7 @@
 #include "scene/bodies.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -51,10 +52,17 @@ Mesh tidied(const Mesh& mesh) {
   return tidy;
 }
 
+/// Which diagonal cuts the walls of an extrusion where it matters, as OpenSCAD 2021.01 has it.
+struct Diagonals {
+  bool backwards = false;  ///< turned counter-clockwise on the way up, or not at all: the other one of two equal ones
+  bool longer_on_top = false;  ///< where one direction is scaled to nothing, the shorter ones would leave ears
+};
+
 /// Copies of an outline, one behind the other, and the walls between them.
 class Layers {
  public:
-  Layers(const Outline& outline, std::uint64_t count, bool ring) : outline_(outline), count_(count), ring_(ring) {
+  Layers(const Outline& outline, std::uint64_t count, bool ring, const Diagonals& diagonals = {})
+      : outline_(outline), count_(count), ring_(ring), diagonals_(diagonals) {
     size_ = static_cast<std::uint32_t>(outline.points());
   }
 
@@ -76,11 +84,14 @@ class Layers {
     for (std::uint64_t layer = 0; layer + (ring_ ? 0 : 1) < count_; ++layer) {
       const auto here = static_cast<std::uint32_t>(layer * size_);
       const auto there = static_cast<std::uint32_t>((layer + 1) % count_ * size_);
+      const bool top = !ring_ && layer + 2 == count_;
       std::uint32_t first = 0;
       for (const Contour& contour : outline_.contours) {
         const auto n = static_cast<std::uint32_t>(contour.size());
+        const bool flip = (twice_area(contour) < 0) != diagonals_.backwards;
         for (std::uint32_t i = 0; i < n; ++i) {
-          add_quad(mesh, here + first + i, here + first + (i + 1) % n, there + first + (i + 1) % n, there + first + i);
+          const std::uint32_t a = first + i, b = first + (i + 1) % n;
+          add_quad(mesh, {here + a, here + b, there + b, there + a}, flip, top && diagonals_.longer_on_top);
         }
         first += n;
       }
@@ -88,14 +99,18 @@ class Layers {
   }
 
   /// Cut along the shorter diagonal.
-  static void add_quad(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+  /// @param flip  which one where both are equal but for rounding
+  static void add_quad(Mesh& mesh, const std::array<std::uint32_t, 4>& q, bool flip, bool longer) {
+    constexpr double equal = 1e-5;
     const auto& v = mesh.vertices;
-    if (squared_norm(v[b] - v[d]) < squared_norm(v[a] - v[c])) {
-      mesh.triangles.push_back({a, b, d});
-      mesh.triangles.push_back({b, c, d});
+    const double one = norm(v[q[0]] - v[q[2]]), other = norm(v[q[1]] - v[q[3]]);
+    const bool tie = std::abs(one - other) <= equal / 2 * (one + other);
+    if ((tie ? !flip : one < other) != longer) {
+      mesh.triangles.push_back({q[0], q[1], q[2]});
+      mesh.triangles.push_back({q[0], q[2], q[3]});
     } else {
-      mesh.triangles.push_back({a, b, c});
-      mesh.triangles.push_back({a, c, d});
+      mesh.triangles.push_back({q[0], q[1], q[3]});
+      mesh.triangles.push_back({q[1], q[2], q[3]});
     }
   }
 
@@ -110,6 +125,7 @@ class Layers {
   const Outline& outline_;
   std::uint64_t count_;
   bool ring_;
+  Diagonals diagonals_;
   std::uint32_t size_ = 0;
 };
 
@@ -118,6 +134,47 @@ class Layers {
 double Roundness::fragments(double radius) const {
   if (fn > 0) return std::floor(std::max(fn, 3.0));
   return std::ceil(std::max(std::min(360 / fa, radius * 2 * std::numbers::pi / fs), 5.0));
+}
+
+namespace {
+
+/// Length of the spiral r = a·φ from its centre.
+double spiral_length(double a, double angle) {
+  return a / 2 * (angle * std::sqrt(1 + angle * angle) + std::asinh(angle));
+}
+
+/// How far a point at `radius` goes in the plane, turned by `angle` (radians) and scaled on the way.
+double way_around(double radius, double angle, double scale) {
+  if (scale == 1) return radius * angle;
+  const double end = scale > 1 ? angle * scale / (scale - 1) : angle / (1 - scale);
+  return spiral_length(radius / end, end) - spiral_length(radius / end, end - angle);
+}
+
+}  // namespace
+
+double slices_of(const LinearExtrusion& how, const Roundness& roundness, const Outline& outline) {
+  const double twist = std::abs(how.twist);
+  const bool even = how.scale.x == how.scale.y;
+  if (twist == 0 && even) return 1;
+  double radius = 0, larger = 0, shift = 0;
+  for (const Contour& contour : outline.contours) {
+    for (const Point2& p : contour) {
+      radius = std::max(radius, std::hypot(p.x, p.y));
+      larger = std::max(larger, std::hypot(p.x * how.scale.x, p.y * how.scale.y));
+      shift = std::max(shift, std::hypot(p.x - p.x * how.scale.x, p.y - p.y * how.scale.y));
+    }
+  }
+  if (twist == 0) {
+    if (roundness.fn > 0) return std::max(std::floor(roundness.fn), 1.0);
+    return std::max(std::ceil(std::hypot(shift, how.up.z) / roundness.fs), 1.0);
+  }
+  const double least = std::max(std::ceil(twist / 120), 1.0);
+  if (!(radius > 0)) return least;
+  if (roundness.fn > 0) return std::max(std::ceil(twist / 360 * roundness.fn), least);
+  const double angle = twist * (std::numbers::pi / 180);
+  const double way = even ? way_around(radius, angle, how.scale.x) : std::max(radius, larger) * angle;
+  return std::max(std::min(std::ceil(twist / roundness.fa), std::ceil(std::hypot(way, how.up.z) / roundness.fs)),
+                  least);
 }
 
 std::uint64_t triangles_of(const Outline& outline, const LinearExtrusion& how) {
@@ -130,7 +187,8 @@ std::uint64_t triangles_of(const Outline& outline, const Revolution& how) {
 
 Mesh extrude(const Outline& outline, const LinearExtrusion& how) {
   const Vec3 base = how.center ? -0.5 * how.up : Vec3{};
-  return Layers(outline, how.slices + 1, false).build([&](const Point2& p, std::uint64_t layer) {
+  const Diagonals diagonals{.backwards = how.twist <= 0, .longer_on_top = (how.scale.x == 0) != (how.scale.y == 0)};
+  return Layers(outline, how.slices + 1, false, diagonals).build([&](const Point2& p, std::uint64_t layer) {
     const double t = static_cast<double>(layer) / static_cast<double>(how.slices);
     const Point2 turn = direction_of(-how.twist * t);
     const double sx = 1 + (how.scale.x - 1) * t, sy = 1 + (how.scale.y - 1) * t;

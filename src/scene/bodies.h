@@ -33,6 +33,10 @@ struct Revolution {
   std::uint64_t fragments = 3;
 };
 
+/// Slices that OpenSCAD 2021.01 makes where none are given: so many that the longest way of a point on the way up is
+/// cut into pieces as a circle is.
+double slices_of(const LinearExtrusion& how, const Roundness& roundness, const Outline& outline);
+
 /// Triangles that will be made, caps included, at most.
 std::uint64_t triangles_of(const Outline& outline, const LinearExtrusion& how);
 std::uint64_t triangles_of(const Outline& outline, const Revolution& how);

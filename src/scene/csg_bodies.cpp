@@ -191,7 +191,7 @@ Outline CsgBodies::polygon(const CsgNode& node) const {
 
 // Motions -------------------------------------------------------------------------------------------------------------
 
-std::optional<LinearExtrusion> CsgBodies::linear_extrusion(const CsgNode& node) const {
+std::optional<LinearExtrusion> CsgBodies::linear_extrusion(const CsgNode& node, const Outline& outline) const {
   if (csg_argument(node, "file", 99)) fail_in_csg(source_, node.at, "extruding a file is not supported");
   LinearExtrusion how;
   how.up = {0, 0, number(node, "height", 0, 1)};
@@ -211,8 +211,8 @@ std::optional<LinearExtrusion> CsgBodies::linear_extrusion(const CsgNode& node) 
     }
     if (how.scale.x < 0 || how.scale.y < 0) fail_in_csg(source_, scale->at, "must not be below 0");
   }
-  const double turns = std::abs(how.twist) / 360;
-  const double slices = std::max(number(node, "slices", 99, std::ceil(turns * roundness(node).fragments(1))), 1.0);
+  const double given = number(node, "slices", 99, 0);
+  const double slices = given >= 1 ? given : slices_of(how, roundness(node), outline);
   if (!(slices <= most_pieces)) fail_in_csg(source_, node.at, "asks for more than 1,000,000 slices");
   how.slices = static_cast<std::uint64_t>(slices);
   if (!(how.up.z > 0)) return {};
@@ -223,7 +223,7 @@ std::optional<Revolution> CsgBodies::revolution(const CsgNode& node, double reac
   if (csg_argument(node, "file", 99)) fail_in_csg(source_, node.at, "turning a file is not supported");
   Revolution how;
   how.angle = std::clamp(number(node, "angle", 99, 360), -360.0, 360.0);
-  if (how.angle == 0) how.angle = 360;
+  if (how.angle == 0) return {};
   const bool ring = std::abs(how.angle) == 360;
   how.start = number(node, "start", 99, ring ? 180 : 0);  // as OpenSCAD has it: a full turn begins on the left
   const auto around = static_cast<double>(fragments(node, reach));

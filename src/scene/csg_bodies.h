@@ -22,7 +22,7 @@ class CsgBodies {
   std::optional<Mesh> solid(const CsgNode& node) const;
   std::optional<Outline> flat(const CsgNode& node) const;
 
-  std::optional<LinearExtrusion> linear_extrusion(const CsgNode& node) const;
+  std::optional<LinearExtrusion> linear_extrusion(const CsgNode& node, const Outline& outline) const;
   /// @param reach  largest distance of the outline from the axis
   std::optional<Revolution> revolution(const CsgNode& node, double reach) const;
   Affine matrix(const CsgNode& node) const;

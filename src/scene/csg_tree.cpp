@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -96,9 +97,14 @@ class Parser {
     if (p_ == source_.end() || !begins_name(*p_)) expected("a statement such as cube(size = [1, 1, 1]);");
     node.name = peek_name();
     p_ += node.name.size();
+    if (take('='))
+      fail_in_csg(source_, node.at, "a .csg file has no variables; make one with openscad -o x.csg x.scad");
     need('(', "'(' behind the name of the statement");
     arguments(node);
     if (take(';')) return node;
+    if (p_ != source_.end() && begins_name(*p_)) {
+      expected("';' or '{' behind the arguments, as openscad -o x.csg x.scad writes them");
+    }
     need('{', "';' or '{' behind the arguments");
     node.children = statements(depth + 1);
     if (!take('}'))
@@ -181,7 +187,7 @@ class Parser {
       made.kind = CsgValue::Kind::number;
       made.number = name == "inf" ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
     } else if (name != "undef") {
-      expected("a value; a .csg file has no variables, make one with openscad -o x.csg");
+      expected("a value; a .csg file has no variables, make one with openscad -o x.csg x.scad");
     }
     p_ += name.size();
   }
@@ -193,6 +199,30 @@ class Parser {
 
 }  // namespace
 
+bool begins_like_csg(std::string_view text) {
+  constexpr std::array<std::string_view, 25> names{
+      "group",   "union",   "render",   "color",      "difference",     "intersection",   "multmatrix",
+      "cube",    "sphere",  "cylinder", "polyhedron", "linear_extrude", "rotate_extrude", "square",
+      "circle",  "polygon", "import",   "hull",       "minkowski",      "projection",     "text",
+      "surface", "offset",  "resize",   "roof"};
+  const auto skip = [&](std::string_view blanks) {
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  };
+  for (skip(" \t\r\n*%!;"); text.starts_with("//") || text.starts_with("/*"); skip(" \t\r\n*%!;")) {
+    const std::string_view end = text[1] == '/' ? "\n" : "*/";
+    const std::size_t at = text.find(end, 2);
+    if (at == std::string_view::npos) return false;
+    text.remove_prefix(at + end.size());
+  }
+  const auto name = std::find_if(names.begin(), names.end(), [&](std::string_view n) {
+    return text.starts_with(n) && text.size() > n.size() && !begins_name(text[n.size()]);
+  });
+  if (name == names.end()) return false;
+  text.remove_prefix(name->size());
+  skip(" \t\r\n");
+  return text.starts_with('(');
+}
+
 std::vector<CsgNode> parse_csg(const Source& source, std::size_t depth) {
   return Parser(source, depth).read();
 }
@@ -203,6 +233,20 @@ void fail_in_csg(const Source& source, const char* at, std::string_view what) {
   const std::size_t last = before.rfind('\n');
   const std::size_t column = before.size() - (last == std::string_view::npos ? 0 : last + 1) + 1;
   fail(source, fmt::format("line {}, column {}: {}", line, column, what));
+}
+
+bool is_csg_group(std::string_view name) {
+  return name == "group" || name == "union" || name == "render" || name == "color";
+}
+
+void refuse_csg_node(const Source& source, const CsgNode& node) {
+  constexpr std::array<std::string_view, 13> known{
+      "hull", "minkowski",  "projection", "text",       "surface",           "offset", "resize", "roof",
+      "fill", "import_stl", "import_off", "import_dxf", "dxf_linear_extrude"};
+  const bool is_known = std::find(known.begin(), known.end(), node.name) != known.end();
+  fail_in_csg(source, node.at,
+              fmt::format("{} {} is not supported; export this part as a mesh and import it",
+                          is_known ? "the OpenSCAD node" : "the unknown node", evenmesh::quoted(node.name)));
 }
 
 const CsgValue* csg_argument(const CsgNode& node, std::string_view name, std::size_t position) {

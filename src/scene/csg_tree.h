@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "evenmesh/error.h"
 #include "io/source.h"
 
 namespace evenmesh {
@@ -31,6 +32,9 @@ struct CsgNode {
   const char* at = nullptr;
 };
 
+/// Whether a text begins with a statement of OpenSCAD, behind blanks and comments.
+bool begins_like_csg(std::string_view text);
+
 /// Splits a file into its statements.
 /// @param depth  of nodes within each other, at most
 /// @throws UnusableInput  with line and column: what was expected and what is there
@@ -38,6 +42,24 @@ std::vector<CsgNode> parse_csg(const Source& source, std::size_t depth);
 
 /// Throws UnusableInput "name: line L, column C: what".
 [[noreturn]] void fail_in_csg(const Source& source, const char* at, std::string_view what);
+
+/// Whether a node is the union of its children: group, union, render, color.
+bool is_csg_group(std::string_view name);
+
+/// Throws UnusableInput: a node that is not read.
+[[noreturn]] void refuse_csg_node(const Source& source, const CsgNode& node);
+
+/// Runs what may complain without knowing where it is.
+template <typename Make>
+auto in_csg(const Source& source, const CsgNode& node, const Make& make) {
+  try {
+    return make();
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    fail_in_csg(source, node.at, node.name + ": " + error.what());
+  }
+}
 
 /// The argument of that name, or the unnamed one at `position`; nullptr if there is none, or it is undef.
 const CsgValue* csg_argument(const CsgNode& node, std::string_view name, std::size_t position);

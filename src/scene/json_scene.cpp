@@ -13,6 +13,7 @@
 #include "scene/json_node.h"
 #include "scene/json_text.h"
 #include "scene/workshop.h"
+#include "shape/suggestions.h"
 
 namespace evenmesh {
 namespace {
@@ -51,12 +52,44 @@ class JsonReader {
     for (const Kind& kind : kinds()) {
       if (!place.has(kind.key)) continue;
       if (found != nullptr) {
-        place.refuse(fmt::format("has both '{}' and '{}'; put them into two nodes", found->key, kind.key));
+        place.refuse(fmt::format("has both '{}' and '{}'; {}", found->key, kind.key,
+                                 takes_one(*found) ? fmt::format("put '{}' into a node under 'of'", kind.key)
+                                 : takes_one(kind) ? fmt::format("put '{}' into a node under 'of'", found->key)
+                                                   : "put them into two nodes"));
       }
       found = &kind;
     }
-    if (found == nullptr) place.refuse("needs one of the keys " + kind_list());
+    if (found == nullptr) refuse_without_kind(place);
     return *found;
+  }
+
+  static bool takes_one(const Kind& kind) {
+    return std::any_of(kind.beside.begin(), kind.beside.end(), [](std::string_view key) { return key == "of"; });
+  }
+
+  /// One of the keys may be meant to be a known one.
+  [[noreturn]] static void refuse_without_kind(const JsonPlace& place) {
+    std::vector<std::string_view> known;
+    for (const Kind& kind : kinds()) known.push_back(kind.key);
+    for (const auto& [key, unused] : place.value().items()) {
+      const std::string meant = did_you_mean(in_lower_case(key), known);
+      if (!meant.empty()) place.refuse(fmt::format("has the unknown key {}{}", evenmesh::quoted(key), meant));
+    }
+    place.refuse("needs one of the keys " + kind_list());
+  }
+
+  static std::string in_lower_case(std::string text) {
+    for (char& c : text)
+      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+  }
+
+  static std::string what_to_do(const std::string& key, const Kind& kind) {
+    for (const std::string_view motion : {"scale", "rotate", "translate", "matrix"})
+      if (key == motion) return fmt::format("; put the node under 'of' beside a 'transform' with '{}'", motion);
+    std::vector<std::string_view> known(kind.beside.begin(), kind.beside.end());
+    const std::string meant = did_you_mean(in_lower_case(key), known);
+    return meant.empty() ? "; remove it" : meant;
   }
 
   static void refuse_other_keys(const JsonPlace& place, const Kind& kind, bool top) {
@@ -65,7 +98,8 @@ class JsonReader {
       const auto is_key = [&name = key](const char* known) { return name == known; };
       if (key == kind.key || std::any_of(kind.beside.begin(), kind.beside.end(), is_key)) continue;
       if (!std::any_of(at_top.begin(), at_top.end(), is_key)) {
-        place.refuse(fmt::format("has the unknown key {} beside '{}'; remove it", evenmesh::quoted(key), kind.key));
+        place.refuse(fmt::format("has the unknown key {} beside '{}'{}", evenmesh::quoted(key), kind.key,
+                                 what_to_do(key, kind)));
       }
       if (!top) place.refuse(fmt::format("has {}, which is for the top of the file only", evenmesh::quoted(key)));
     }
@@ -76,7 +110,8 @@ class JsonReader {
     if (!place.has("units")) return;
     const JsonPlace units = place.member("units");
     const std::string name = units.text();
-    if (name != "mm" && name != "cm" && name != "m" && name != "in") units.refuse("is none of mm, cm, m, in");
+    if (name != "mm" && name != "cm" && name != "m" && name != "in")
+      units.refuse("is none of mm, cm, m, in; take one of them, or leave it out");
   }
 
   Shape node(const JsonPlace& place, const Affine* placement, std::size_t depth) const {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "evenmesh/error.h"
+#include "scene/crossings.h"
 
 namespace evenmesh {
 
@@ -54,14 +55,15 @@ Contour without_repeats(const Contour& path) {
 
 Outline outline_of_paths(std::vector<Contour> paths) {
   Outline outline;
+  std::vector<Contour>& contours = outline.contours;
   for (const Contour& path : paths) {
     Contour contour = without_repeats(path);
-    if (contour.size() >= 3 && twice_area(contour) != 0) outline.contours.push_back(std::move(contour));
+    if (contour.size() >= 3) contours.push_back(std::move(contour));
   }
-  std::vector<Contour>& contours = outline.contours;
   if (contours.size() > 1 && static_cast<double>(contours.size()) * static_cast<double>(outline.points()) > 1e9) {
     throw UnusableInput("has too many paths; split the polygon");
   }
+  if (paths_meet(contours)) return untangled(contours);
   for (std::size_t i = 0; i < contours.size(); ++i) {
     bool hole = false;
     for (std::size_t j = 0; j < contours.size(); ++j)
@@ -198,6 +200,7 @@ class EarClipper {
     std::size_t left = n, at = 0, tried = 0;
     bool flat_too = false;  // corners of 180° only when nothing else is left
     while (left > 2) {
+      if (!spend(1)) return false;
       const std::size_t a = previous[at], c = next[at];
       const int turn = side(ring[a], ring[at], ring[c]);
       if ((turn > 0 && empty_ear(ring, next, a, at, c)) || (turn == 0 && flat_too)) {
@@ -208,7 +211,6 @@ class EarClipper {
         continue;
       }
       at = c;
-      if (!spend(1)) return false;
       if (++tried < left) continue;
       if (flat_too) return false;
       flat_too = true, tried = 0;

@@ -21,10 +21,10 @@ struct Outline {
 /// Twice the signed area, positive when counter-clockwise.
 double twice_area(const Contour& contour);
 
-/// The region inside of an odd number of paths, none of which crosses itself or another one.
+/// The region inside of an odd number of paths, which may cross themselves and each other (see untangled).
 ///
-/// Repeated points and paths without area are left out. Where paths do cross, every lobe counts as inside.
-/// Cost: paths × points. @throws UnusableInput  more than 10⁹ of that
+/// Repeated points are left out, and what has no area. Cost: paths × points, and the pairs of edges side by side.
+/// @throws UnusableInput  more than 10⁹ of either, or crossings that cannot be resolved
 Outline outline_of_paths(std::vector<Contour> paths);
 
 /// Triangles that fill the outline; corners are counted through all contours, in their order.

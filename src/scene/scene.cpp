@@ -12,6 +12,7 @@
 #include "evenmesh/io.h"
 #include "io/bytes.h"
 #include "io/text.h"
+#include "scene/csg_tree.h"
 #include "scene/workshop.h"
 
 namespace evenmesh {
@@ -40,9 +41,10 @@ std::string_view without_byte_order_mark(std::string_view bytes) {
 
 bool is_scene(std::string_view name, std::string_view first_bytes) {
   if (format_of_content(first_bytes)) return false;
-  if (has_extension(name, ".csg") || has_extension(name, ".json")) return true;
+  if (has_extension(name, ".csg") || has_extension(name, ".json") || has_extension(name, ".scad")) return true;
   std::string_view bytes = without_byte_order_mark(first_bytes);
   bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
+  if (begins_like_csg(bytes)) return !format_of_name(name);
   return bytes.starts_with('{') && format_of_name(name) != MeshFormat::glb;
 }
 
@@ -51,10 +53,13 @@ Shape parse_scene(std::string_view bytes, std::string_view name, const fs::path&
   if (bytes.size() > limits.bytes) refuse_size(name, bytes.size(), limits.bytes);
   const Source source{without_byte_order_mark(bytes), name, &run};
   if (source.bytes.empty()) fail(source, "is empty; export it again");
+  if (has_extension(name, ".scad")) {
+    fail(source, "is a program of OpenSCAD, which has to be evaluated first: openscad -o x.csg x.scad");
+  }
+  const bool csg = has_extension(name, ".csg") || (!has_extension(name, ".json") && begins_like_csg(source.bytes));
   try {
     Workshop workshop(folder, limits, run);
-    return has_extension(name, ".csg") ? read_csg_scene(source, workshop, limits)
-                                       : read_json_scene(source, workshop, limits);
+    return csg ? read_csg_scene(source, workshop, limits) : read_json_scene(source, workshop, limits);
   } catch (const std::bad_alloc&) {
     fail(source, "does not fit into the memory; reduce it or use a larger machine");
   }

@@ -47,6 +47,10 @@ Shape Workshop::once(std::map<fs::path, Shape>& known, const std::string& name, 
 
 Shape Workshop::mesh_file(const std::string& name) {
   return once(meshes_, name, [&](const fs::path& path, const std::string& title) {
+    if (const std::string ending = path.extension().string(); ending == ".csg" || ending == ".json") {
+      throw UnusableInput(title +
+                          ": is a scene, not a mesh; copy what it holds into this one, or make a mesh of it first");
+    }
     return shape_from_mesh(read_mesh(path, run_), title);
   });
 }

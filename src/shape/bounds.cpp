@@ -100,7 +100,8 @@ std::vector<Cell> cells_of_shell(double half) {
 
 [[noreturn]] void throw_unbounded(const Field& field) {
   const std::vector<Cell> cells = cells_of_shell(std::ldexp(1.0, largest_exponent - 1));
-  std::string message = "the solid does not seem to be bounded; give --bounds x0,y0,z0,x1,y1,z1";
+  std::string message =
+      "the solid does not seem to be bounded; give --bounds x0,y0,z0,x1,y1,z1, or \"bounds\" in a scene";
   if (middles_inside(field, cells) == cells.size())
     message += ", or flip the sign: f < 0 is inside, and f is negative everywhere far from the origin";
   throw UnusableInput(message);

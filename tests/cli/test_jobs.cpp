@@ -245,6 +245,23 @@ TEST_F(Jobs, DexelsGoOutAndComeIn) {
               Json::parse(info("b.ply")).at("volume").get<double>() / 2, 0.05);
 }
 
+TEST_F(Jobs, BrokenDexelsAreSaidToBeDexels) {
+  const auto says = [&](const std::string& name, const std::string& bytes, const std::string& words) {
+    write(name, bytes);
+    const Outcome outcome = run({"mesh", name, "-o", "x.ply"});
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  };
+  says("a.tdx", "garbage", "error: a.tdx: is no dexel file");
+  says("b.tdx", "1 2 3\n4 5 6\n", "error: b.tdx: is no dexel file");
+  says("c.tdx", "evenmesh dex", "error: c.tdx: is truncated");
+  says("d.tdx", "evenmesh dexels 1\n", "error: d.tdx: is truncated: its header has 96 bytes");
+  says("e.bin", "evenmesh dexels 2\n", "error: e.bin: is no dexel file of this version");
+  const Outcome outcome = run({"info", "d.tdx"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("d.tdx holds dexels; make a mesh of it first"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Jobs, RegularizesTheSolidFirstOnRequest) {
   // Two balls a gap of 0.1 apart.
   Words words{"mesh", "-e", "min((x-0.55)^2, (x+0.55)^2)+y^2+z^2-0.25", "-n", "200", "-o", "m.ply", "-q"};

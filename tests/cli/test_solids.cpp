@@ -43,6 +43,21 @@ TEST_F(Solids, ScenesOfOneBody) {
   expect_solid(Json::parse(info("c.ply")), 2, ball, 0.03);
 }
 
+TEST_F(Solids, ScenesFromStandardInput) {
+  write("tetra.obj", tetrahedron_obj);
+  const auto meshed = [&](const std::string& scene) {
+    const Outcome outcome = run({"mesh", "-", "-n", "300", "-o", "x.ply", "-q"}, {.input = scene});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return Json::parse(info("x.ply"));
+  };
+  expect_solid(meshed(R"( {"transform": {"scale": 2}, "of": {"mesh": "tetra.obj"}})"), 2, 8.0 / 6, 0.05);
+  expect_solid(meshed("// a part\nmultmatrix([[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]) { import(\"tetra.obj\"); }"), 2,
+               8.0 / 6, 0.05);
+  const Outcome outcome = run({"mesh", "-", "-o", "x.ply"}, {.input = "group() { cubes(); }"});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_NE(outcome.err.find("standard input: line 1, column 11: "), std::string::npos) << outcome.err;
+}
+
 // From here on compounds are sampled, which needs sample_shape() to know them.
 
 TEST_F(Solids, BooleansOfExpressions) {
@@ -89,7 +104,7 @@ TEST_F(Solids, OpenScadDifference) {
 
 TEST_F(Solids, OffsetsOfABall) {
   const auto made = [&](const Words& how) {
-    Words words{"offset", "-e", left_ball, "--bounds", "-2,-2,-2,2,2,2", "-n", "300", "-o", "x.ply", "-q"};
+    Words words{"offset", "-e", left_ball, "--bounds", "-2,-2,-2,2,2,2", "-n", "300", "-r", "60", "-o", "x.ply", "-q"};
     words.insert(words.end(), how.begin(), how.end());
     const Outcome outcome = run(words);
     EXPECT_EQ(outcome.status, 0) << outcome.err;

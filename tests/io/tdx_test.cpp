@@ -22,5 +22,17 @@ TEST(DexelFile, ComesBackAsItWas) {
   EXPECT_THROW(parse_dexels(bytes + "x", "a.tdx"), UnusableInput);
 }
 
+TEST(DexelFile, OtherReadersSayWhatItIs) {
+  const std::string bytes = serialize_dexels({{0, 0, 0}, 1, {1, 1, 1}, {}});
+  EXPECT_TRUE(is_dexel_file("evenmesh dexels 2\n"));
+  EXPECT_FALSE(is_dexel_file("evenmesh"));
+  try {
+    parse_mesh(bytes, "a.ply");
+    FAIL();
+  } catch (const UnusableInput& error) {
+    EXPECT_NE(std::string(error.what()).find("a.ply: holds dexels, not a mesh"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace evenmesh

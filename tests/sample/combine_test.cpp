@@ -155,7 +155,7 @@ TEST(Offset, LiesWithinACellOfTheExactOne) {
   const Shape box = shape_from_mesh(make_box({0.8, 0.8, 0.8}));
   for (const double d : {0.02, 0.07, 0.2, -0.02, -0.07, -0.2}) {
     SCOPED_TRACE(d);
-    for (const std::size_t resolution : {60u, 150u}) {
+    for (const std::size_t resolution : {40u, 100u}) {
       EXPECT_LT(worst(on_grid(offset(gallery_shape("sphere"), d), resolution),
                       [&](const Vec3& p) { return ball_distance(p) - d; }),
                 0.5);

@@ -104,6 +104,71 @@ TEST_F(Csg, PolygonsWithHoles) {
               1e-12);
 }
 
+TEST_F(Csg, PolygonsThatCross) {
+  const auto volume_of = [&](const std::string& polygon) {
+    const Shape shape = csg("linear_extrude(height = 1) { polygon(" + polygon + "); }");
+    EXPECT_NE(shape.mesh(), nullptr) << polygon;
+    if (shape.mesh() == nullptr) return 0.0;
+    expect_closed(*shape.mesh(), false);
+    return volume(*shape.mesh());
+  };
+  // Of OpenSCAD's meshes, which have what an odd number of lobes covers.
+  EXPECT_NEAR(volume_of("points = [[0,0],[20,12],[20,0],[0,12]]"), 120, 1e-9) << "a bow tie";
+  EXPECT_NEAR(volume_of("points = [[0,0],[30,20],[30,0],[0,12]]"), 255, 1e-9) << "an uneven one";
+  EXPECT_NEAR(
+      volume_of("points = [[15,0],[-12.1353,8.81678],[4.63525,-14.2658],[4.63525,14.2658],[-12.1353,-8.81678]]"),
+      872.64 / 5, 1e-2)
+      << "a pentagram has a hole";
+  const std::string squares = "points = [[0,0],[20,0],[20,20],[0,20],[10,10],[30,10],[30,30],[10,30]], paths = ";
+  EXPECT_NEAR(volume_of(squares + "[[0,1,2,3],[4,5,6,7]]"), 600, 1e-9) << "without what both cover";
+  EXPECT_NEAR(volume_of(squares + "[[0,1,2,3],[7,6,5,4]]"), 600, 1e-9);
+  EXPECT_NEAR(volume_of("points = [[0,0],[20,0],[20,20],[0,20],[0,5],[10,5],[10,15],[0,15]], paths = [[0,1,2,3],"
+                        "[4,5,6,7]]"),
+              300, 1e-9)
+      << "a hole that shares an edge";
+  EXPECT_NEAR(volume_of("points = [[0,0],[10,0],[10,5],[20,5],[10,5],[10,10],[0,10]]"), 100, 1e-9) << "a spur";
+  EXPECT_NEAR(volume_of("points = [[0,0],[10,0],[10,10],[20,10],[20,20],[10,20],[10,10],[0,10]]"), 200, 1e-9);
+  const std::string twice = "[[0,0],[10,0],[10,10],[0,10],[0,0],[10,0],[10,10],[0,10]]";
+  expect_says(refusal("linear_extrude(height = 1) { polygon(points = " + twice + "); }", "a.csg"), "holds no solid");
+}
+
+TEST_F(Csg, ScribblesAreClosed) {
+  std::uint32_t state = 1;
+  const auto random = [&] { return (state = state * 1664525u + 1013904223u) >> 20; };
+  for (const int step : {1, 97}) {  // any crossings, and many in the same point
+    std::string points;
+    for (int i = 0; i < 60; ++i) {
+      const unsigned x = random() / static_cast<unsigned>(step), y = random() / static_cast<unsigned>(step);
+      points += (i ? ",[" : "[") + std::to_string(x) + "," + std::to_string(y) + "]";
+    }
+    const Shape shape = csg("linear_extrude(height = 1) { polygon(points = [" + points + "]); }");
+    ASSERT_NE(shape.mesh(), nullptr);
+    expect_closed(*shape.mesh(), false);
+    EXPECT_GT(volume(*shape.mesh()), 0);
+  }
+}
+
+TEST_F(Csg, SlicesFollowOpenScad) {
+  const auto extruded = [&](const std::string& how, const std::string& what) {
+    const Shape shape = csg("linear_extrude(" + how + ") { " + what + " }");
+    return std::pair(shape.mesh()->vertices.size() / 4 - 1, volume(*shape.mesh()));
+  };
+  const std::string block = "square(size = [8, 5], center = true);", fine = "$fn = 0, $fa = 3, $fs = 0.7";
+  EXPECT_EQ(extruded("height = 10, twist = -150", block).first, 8u);
+  EXPECT_EQ(extruded("height = 10, twist = -150, scale = [0.5, 0.5]", block).first, 7u) << "a shorter way";
+  EXPECT_EQ(extruded("height = 6, twist = 45, scale = [0.5, 1.5]", block).first, 4u);
+  EXPECT_EQ(extruded("height = 1, twist = 90", block).first, 4u);
+  EXPECT_EQ(extruded("height = 20, twist = 120, " + fine, block).first, 32u);
+  EXPECT_EQ(extruded("height = 40, twist = 120, " + fine, block).first, 40u) << "limited by the angle";
+  EXPECT_EQ(extruded("height = 10, twist = 360, $fn = 60", block).first, 60u);
+  EXPECT_EQ(extruded("height = 10, scale = [2, 2]", block).first, 1u);
+  // The volumes tell which diagonals the walls have.
+  EXPECT_NEAR(extruded("height = 15, twist = 200, slices = 4", "square(size = [8, 6], center = true);").second,
+              825.7804, 1e-3);
+  const std::string beside = "polygon(points = [[0,-2],[4,-2],[4,2],[0,2]]);";
+  EXPECT_NEAR(extruded("height = 10, twist = -150, scale = [0.5, 0.5]", beside).second, 102.5220, 1e-3) << "equal ones";
+}
+
 TEST_F(Csg, RotateExtrusion) {
   const std::string square = "{ multmatrix([[1,0,0,2],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { square(size = [1, 1]); } }";
   const Shape ring = csg("rotate_extrude(angle = 360, $fn = 100) " + square);
@@ -112,15 +177,40 @@ TEST_F(Csg, RotateExtrusion) {
   EXPECT_NEAR(volume(only_mesh(quarter)), (polygon_area(100, 3) - polygon_area(100, 2)) / 4, 1e-9);
   expect_box(quarter.bounds, {0, 0, 0}, {3, 3, 1}, 1e-12);
   expect_says(refusal("rotate_extrude() { square(size = 1, center = true); }", "scene.csg"), "both sides of the axis");
+  expect_says(refusal("rotate_extrude(angle = 0) " + square, "scene.csg"), "holds no solid");
 }
 
-TEST_F(Csg, FlatSetsAreExtrudedEach) {
+TEST_F(Csg, FlatSetsAreCombinedBeforeTheyAreExtruded) {
   const Shape shape =
       csg("linear_extrude(height = 1) { difference() { square(size = 4); multmatrix([[1,0,0,1],[0,1,0,1],[0,0,1,9],"
           "[0,0,0,1]]) { circle($fn = 20, r = 1); } } }");
-  ASSERT_NE(shape.compound(), nullptr);
-  EXPECT_EQ(shape.compound()->kind, Compound::Kind::subtract);
-  expect_box(shape.compound()->operands[1].bounds, {0, 0, 0}, {2, 2, 1}, 1e-12);
+  const double circle = polygon_area(20, 1);
+  ASSERT_NE(shape.mesh(), nullptr);
+  expect_closed(*shape.mesh(), false);  // the disc touches the sides of the square
+  EXPECT_NEAR(volume(*shape.mesh()), 16 - circle, 1e-9);
+  const auto volume_of = [&](const std::string& flat) {
+    const Shape made = csg("linear_extrude(height = 1) { " + flat + " }");
+    if (made.mesh() == nullptr) throw std::runtime_error("no mesh");
+    expect_closed(*made.mesh(), false);
+    return volume(*made.mesh());
+  };
+  const std::string square = "square(size = 4);", disc = "circle($fn = 20, r = 1);";
+  EXPECT_NEAR(volume_of(square + disc), 16 + 0.75 * circle, 1e-9) << "around a corner of the square";
+  EXPECT_NEAR(volume_of("intersection() { " + square + disc + " }"), 0.25 * circle, 1e-9);
+  EXPECT_NEAR(volume_of("difference() { " + square + disc + disc + " }"), 16 - 0.25 * circle, 1e-9);
+  EXPECT_NEAR(volume_of("union() { " + square + square + " }"), 16, 1e-9);
+  EXPECT_NEAR(volume_of(square + "multmatrix([[1,0,0,4],[0,1,0,1],[0,0,1,0],[0,0,0,1]]) { square(size = 2); }"), 20,
+              1e-9)
+      << "side by side";
+  EXPECT_NEAR(
+      volume_of("multmatrix([[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { difference() { " + square + disc + " } }"),
+      16 - 0.25 * circle, 1e-9);
+  expect_says(refusal("linear_extrude(height = 1) { difference() { " + square + square + " } }", "a.csg"), "no solid");
+  // Holes turn the diagonals of their walls: the volume is that of OpenSCAD's mesh.
+  const Shape twisted = csg(
+      "linear_extrude(height = 10, twist = 100, slices = 5) { multmatrix([[1,0,0,2],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) {"
+      "difference() { square(size = 4, center = true); square(size = 2, center = true); } } }");
+  EXPECT_NEAR(volume(only_mesh(twisted)), 133.5487, 1e-3);
 }
 
 TEST_F(Csg, MatricesMoveFromTheInsideOut) {
@@ -188,7 +278,8 @@ TEST_F(Csg, ErrorsNameLineAndColumn) {
   says("group() { cube();", "line 1, column 1: the braces of this statement are never closed");
   says("cube(); }", "line 1, column 9: '}' closes nothing");
   says("cube; ", "expected '(' behind the name");
-  says("$x = 3;", "expected '(' behind the name of the statement, found '='");
+  says("$x = 3;", "line 1, column 1: a .csg file has no variables; make one with openscad");
+  says("linear_extrude(height = 3) square(2);", "as openscad -o x.csg x.scad writes them, found 'square'");
   says("cube(\"", "never closed by a quote");
   says("/* cube();", "comment is never closed");
   says("square();", "line 1, column 1: 'square' is flat where a solid is needed");
@@ -198,6 +289,20 @@ TEST_F(Csg, ErrorsNameLineAndColumn) {
   says("polyhedron(points = [[0,0,0]], faces = [[0,1,2]]);", "is no index of a point; there are 1, counted from 0");
   says("sphere($fn = 1e9);", "asks for more than 1,000,000 pieces");
   says("sphere($fn = 1e6);", "asks for more triangles than a scene may have");
+}
+
+TEST_F(Csg, IsRecognizedByContent) {
+  for (const char* text : {"cube();", "// a\n/* b */ % group (){}", "\xef\xbb\xbf!multmatrix([[", "difference() { }"}) {
+    EXPECT_TRUE(is_scene("-", text)) << text;
+    EXPECT_TRUE(is_scene("a.txt", text)) << text;
+  }
+  for (const char* text : {"cube", "cubes();", "g cube\nv 0 0 0\n", "1 2 3\n", "# cube\n1 2 3\n", "/* cube();", ""}) {
+    EXPECT_FALSE(is_scene("-", text)) << text;
+  }
+  EXPECT_NE(parse_scene("cube();", "standard input", folder).mesh(), nullptr);
+  EXPECT_TRUE(is_scene("a.scad", "x = 3;"));
+  expect_says(refusal("cube();", "a.scad"),
+              "a.scad: is a program of OpenSCAD, which has to be evaluated first: openscad");
 }
 
 TEST_F(Csg, DepthIsLimited) {

@@ -131,7 +131,16 @@ TEST_F(Json, ErrorsNameThePath) {
   says(R"({"union": [3]})", "scene.json: union[0]: needs an object with one of the keys union, intersection");
   says(R"({"sum": []})", "scene.json: needs one of the keys union, intersection");
   says("[]", "scene.json: needs an object with one of the keys");
-  says(R"({"mesh": "tetra.off", "gallery": "sphere"})", "scene.json: has both 'mesh' and 'gallery'");
+  says(R"({"mesh": "tetra.off", "gallery": "sphere"})",
+       "scene.json: has both 'mesh' and 'gallery'; put them into two nodes");
+  says(R"({"transform": {"scale": 2}, "gallery": "sphere"})", "put 'gallery' into a node under 'of'");
+  says(R"({"gallery": "sphere", "offset": 1})", "put 'gallery' into a node under 'of'");
+  says(R"({"unoin": []})", "scene.json: has the unknown key 'unoin'; did you mean union?");
+  says(R"({"name": "a", "Union": []})", "scene.json: has the unknown key 'Union'; did you mean union?");
+  says(R"({"implicit": "x", "parameter": {}})", "'parameter' beside 'implicit'; did you mean parameters?");
+  says(R"({"mesh": "tetra.off", "scale": 2})", "put the node under 'of' beside a 'transform' with 'scale'");
+  write_file(folder / "other.json", "{}");
+  says(R"({"mesh": "other.json"})", "scene.json: mesh: other.json: is a scene, not a mesh");
   says(R"({"mesh": "tetra.off", "colour": "red"})", "scene.json: has the unknown key 'colour' beside 'mesh'");
   says(R"({"mesh": "none.stl"})", "scene.json: mesh: there is no file '");
   says(R"({"mesh": ""})", "scene.json: mesh: needs a text in quotes");
