@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
+#include <string>
+#include <string_view>
 
 #include "command.h"
+#include "evenmesh/glsl.h"
 #include "interrupt.h"
 #include "terminal.h"
 
@@ -16,13 +21,26 @@ using namespace evenmesh;
 using cli::say;
 using cli::Status;
 
-void describe(CLI::App& app) {
+/// With -v also the renderer that would run shaders.
+std::string version(bool verbose) {
+  std::string text = "evenmesh " EVENMESH_VERSION;
+  if (!verbose) return text;
+  try {
+    return text + "\nshaders: " + gl_renderer();
+  } catch (const Error& error) {
+    return text + "\nshaders: none (" + error.what() + ")";
+  }
+}
+
+void describe(CLI::App& app, bool verbose) {
   app.name("evenmesh");
   app.get_formatter()->column_width(34);
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.get_formatter()->label("Subcommands", "Commands");
   app.require_subcommand(0, 1);
-  app.set_version_flag("--version", "evenmesh " EVENMESH_VERSION, "print the version and exit");
+  app.add_flag("-v,--verbose")->description("with --version: also what renders shaders");
+  app.set_version_flag(
+      "--version", [verbose] { return version(verbose); }, "print the version and exit");
   app.set_help_flag("-h,--help", "print this and exit");
   app.footer(
       "evenmesh COMMAND --help shows every option with default, unit and range.\n\n"
@@ -30,9 +48,17 @@ void describe(CLI::App& app) {
       "4 done but a promise could not be kept (said which), 130 cancelled (nothing written).\n");
 }
 
+/// Leaves the process, past a driver that does not come back.
+int finish(int status) {
+  if (!gl_stuck()) return status;
+  std::fflush(nullptr);
+  std::_Exit(status);
+}
+
 int parse_and_act(int argc, char** argv) {
   CLI::App app("evenmesh: any surface in, an even mesh out.");
-  describe(app);
+  describe(app,
+           std::any_of(argv, argv + argc, [](std::string_view word) { return word == "-v" || word == "--verbose"; }));
   cli::Action action;
   cli::add_mesh_command(app, action);
   cli::add_wrap_command(app, action);
@@ -62,10 +88,7 @@ int parse_and_act(int argc, char** argv) {
   return action();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  cli::watch_for_interrupts();
+int run(int argc, char** argv) {
   try {
     return parse_and_act(argc, argv);
   } catch (const Cancelled&) {
@@ -87,4 +110,11 @@ int main(int argc, char** argv) {
     say("internal error", error.what());
     return Status::internal_error;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::watch_for_interrupts();
+  return finish(run(argc, argv));
 }

@@ -47,7 +47,7 @@ class GlslField final : public Field {
   std::size_t batch_size() const override { return 262'144; }
 
   /// Values that were not finite so far, those moved for gradients included.
-  std::size_t non_finite() const { return non_finite_; }
+  std::size_t non_finite() const override { return non_finite_; }
 
  private:
   struct Device;

@@ -183,6 +183,9 @@ class Job {
     if (samples_.disagreements > 0)
       notice(false, fmt::format("the input is not closed: inside or outside was settled by vote at {} grid points",
                                 samples_.disagreements));
+    if (const std::size_t count = non_finite_values(shape_); count > 0)
+      notice(false,
+             fmt::format("{}: not a finite number at {} points, which were taken as outside", shape_.name, count));
     if (samples_.cut_by_bounds && !shape_.capped_by_bounds)
       notice(false, "the solid leaves its bounds and is closed there");
   }
@@ -226,6 +229,14 @@ class Job {
     });
     if (samples_.size() < vertices)
       throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
+  }
+
+  static std::size_t non_finite_values(const Shape& shape) {
+    std::size_t count = 0;
+    if (const Field* field = shape.field()) count = field->non_finite();
+    if (const Compound* compound = shape.compound())
+      for (const Shape& operand : compound->operands) count += non_finite_values(operand);
+    return count;
   }
 
   static bool contains(const Box& outer, const Box& inner) {
@@ -366,7 +377,7 @@ class Job {
       if (!q.two_manifold() || !q.oriented())
         notice(true, fmt::format("the mesh is not a two-manifold: {} non-manifold edges; ask for more vertices",
                                  q.non_manifold_edges));
-    } else if (!two_manifold || !q.closed() || !q.two_manifold() || !q.oriented())
+    } else if (!q.closed() || !q.two_manifold() || !q.oriented())
       notice(true,
              fmt::format(
                  "the mesh is not a closed two-manifold: {} boundary and {} non-manifold edges; ask for more vertices",

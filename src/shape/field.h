@@ -37,6 +37,8 @@ class Field {
   virtual Interval evaluate(const Box& box) const;
   /// Encloses f over each of several boxes. The default asks for one after the other.
   virtual void enclose(std::span<const Box> boxes, std::span<Interval> ranges) const;
+  /// Values so far that were not finite: outside.
+  virtual std::size_t non_finite() const { return 0; }
   /// False where a gradient is made of seven values; true where it costs little more than one.
   virtual bool differentiates() const { return true; }
   /// False where the enclosures are somebody's word: then the surface is followed to where they deny it.

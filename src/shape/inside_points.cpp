@@ -1,5 +1,6 @@
 #include "shape/inside_points.h"
 
+#include <cmath>
 #include <vector>
 
 namespace evenmesh {
@@ -25,6 +26,10 @@ class Asker {
     values_.resize(x_.size());
     field_.evaluate(PointBatch{x_, y_, z_}, values_);
     found_.asked += x_.size();
+    for (const float value : values_) {
+      found_.numbers += std::isfinite(value);
+      found_.least = value < found_.least ? value : found_.least;
+    }
     for (std::size_t i = 0; i < x_.size(); ++i)
       if (values_[i] < 0) found_.box.add({x_[i], y_[i], z_[i]}), ++found_.inside;
     x_.clear(), y_.clear(), z_.clear();

@@ -1,5 +1,7 @@
 #include "shape/probed_bounds.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -50,6 +52,12 @@ class Cubes {
   bool nothing() const {
     return std::all_of(seen_.begin(), seen_.end(), [](const InsidePoints& p) { return p.inside == 0; });
   }
+  float least() const {
+    float least = std::numeric_limits<float>::infinity();
+    for (const InsidePoints& p : seen_)
+      if (p.numbers > 0) least = std::min(least, p.least);
+    return least;
+  }
   bool everything() const { return seen_.back().inside == seen_.back().asked; }
 
   /// The smallest cube that holds all, or else something that has room around it.
@@ -74,10 +82,14 @@ class Cubes {
   std::vector<InsidePoints> seen_;
 };
 
-[[noreturn]] void throw_nowhere() {
+[[noreturn]] void throw_nowhere(float least) {
+  if (std::isinf(least))
+    throw UnusableInput("f is not a finite number anywhere: at none of some million points within ±1024");
   throw UnusableInput(
-      "f < 0 was nowhere found within ±1024: the solid is empty or too small (inside is where f is negative); "
-      "give --bounds x0,y0,z0,x1,y1,z1 if it is not");
+      fmt::format("f < 0 was nowhere found within ±1024, the least value is {:.2g}: the solid is empty or too small "
+                  "(inside is where f is negative); give --bounds x0,y0,z0,x1,y1,z1 if it is not, or --level V, above "
+                  "that value, if f is a distance that never gets negative, as those of many fractals",
+                  least));
 }
 
 [[noreturn]] void throw_unbounded(bool everywhere) {
@@ -145,7 +157,7 @@ bool knows_intervals(const Field& field) {
 
 Box probed_bounds(const Field& field) {
   const Cubes cubes(field);
-  if (cubes.nothing()) throw_nowhere();
+  if (cubes.nothing()) throw_nowhere(cubes.least());
   std::optional<Seen> seen = cubes.solid();
   if (!seen) throw_unbounded(cubes.everything());
   shrink(field, *seen);

@@ -151,7 +151,7 @@ TEST_F(Usage, WrongUsageIsStatus2) {
 
 TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
   write("a.obj", tetrahedron_obj);
-  for (const char* name : {"s.glsl", "s.frag", "s.vdb", "s.nii", "s.nii.gz", "s.nrrd"}) {
+  for (const char* name : {"s.vdb", "s.nii", "s.nii.gz", "s.nrrd"}) {
     write(name, "1 2 3\n");
     const Outcome outcome = run({"mesh", name, "-o", "x.ply"});
     EXPECT_EQ(outcome.status, 2) << name;
@@ -161,7 +161,6 @@ TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
       {"--density", "curvature"},
       {"--backend", "gl"},
       {"--error", "0.001"},
-      {"--entry", "map"},
   };
   for (const Words& option : options) {
     SCOPED_TRACE(testing::PrintToString(option));
@@ -196,10 +195,6 @@ TEST_F(Usage, WrongScenesAreStatus3AndSayWhere) {
     EXPECT_EQ(outcome.status, 3) << name;
     expect_one_sentence(outcome, words);
   }
-  write("glsl.json", R"({"glsl": "a.frag"})");
-  const Outcome outcome = run({"mesh", "glsl.json", "-o", "x.ply"});
-  EXPECT_EQ(outcome.status, 2);
-  expect_one_sentence(outcome, "not available in this version");
 }
 
 TEST_F(Usage, UnreadableInputIsStatus3) {

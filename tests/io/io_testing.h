@@ -27,7 +27,7 @@ inline std::vector<fs::path> corpus_files(bool points = false) {
   for (const auto& entry : fs::recursive_directory_iterator(corpus_folder())) {
     if (!entry.is_regular_file() || entry.path().extension() == ".py") continue;
     const fs::path kind = entry.path().parent_path().filename();
-    if (kind != "scene" && (kind == "points") == points) files.push_back(entry.path());
+    if (kind != "scene" && kind != "glsl_source" && (kind == "points") == points) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;

@@ -161,8 +161,10 @@ TEST_F(Json, ErrorsOfTheTextNameLineAndColumn) {
   expect_says(refusal(R"({"mesh": "a.off", "mesh": "b.off"})"), "has the key 'mesh' twice in one object");
 }
 
-TEST_F(Json, PlannedNodesAreNotAvailable) {
-  expect_says(refusal<NotAvailable>(R"({"union": [{"glsl": "a.frag"}]})"), "scene.json: union[0].glsl: GLSL in scenes");
+TEST_F(Json, ShadersThatCannotBeReadAreNamedWithTheirPlace) {
+  expect_says(refusal(R"({"union": [{"glsl": "a.frag"}]})"), "scene.json: union[0].glsl: there is no file");
+  expect_says(refusal(R"({"glsl": "a.frag", "level": "low"})"), "scene.json: level: ");
+  expect_says(refusal(R"({"glsl": "a.frag", "parameters": {"a": {}}})"), "scene.json: parameters.a: ");
 }
 
 TEST_F(Json, DepthAndSizeAreLimited) {
