@@ -1,6 +1,6 @@
 // Struts and balls, repeated through space and cut to a cube with round edges: a printable lattice.
-uniform float cell = 0.9;
-uniform float strut = 0.15;
+uniform float cell = 1.0;
+uniform float strut = 0.18;
 
 float smin(float a, float b, float k) {
   float h = max(k - abs(a - b), 0.0);

@@ -27,14 +27,14 @@ float groove(float a, float b, float depth, float width) { return max(a, min(a +
 float map(vec3 p) {
   float hub = tube(p, 0.42, 0.3);
   vec3 q = p;
-  sectors(q.xz, 5.0);
+  sectors(q.xz, 3.0);
   q.x -= 0.85;
   rotate(q.yz, 0.5);
-  float blade = box(q, vec3(0.5, 0.06, 0.2)) - 0.06;
+  float blade = box(q, vec3(0.5, 0.08, 0.2)) - 0.09;
   float d = unionRound(hub, blade, 0.1);
   float rim = length(vec2(max(abs(length(p.xz) - 1.32) - 0.06, 0.0), max(abs(p.y) - 0.18, 0.0))) - 0.06;
   d = unionChamfer(d, rim, 0.05);
-  d = groove(d, p.y, 0.05, 0.06);
+  d = groove(d, p.y, 0.05, 0.08);
   vec3 m = p;
   mirror(m.y);
   return max(d, -tube(m, 0.18, 1.0));

@@ -119,6 +119,10 @@ class RootFinder {
 std::vector<GridCube> torn_bricks(std::span<const FieldPart> parts, std::size_t fresh, const Run& run);
 
 /// Samples where f changes its sign on the grid and within the bounds (empty: the grid's), without sources.
+///
+/// Fields that want batches and tell nothing about boxes are not asked at every point of grids with 640 points or more
+/// along a side: a surface that is seen at one of 240 points along it or more is found whole, smaller pieces that lie
+/// apart may be missed. They would be smaller than the cells of a mesh.
 SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, const Run& run);
 
 /// Normals and areas from the positions of the samples around each: least-squares planes, oriented by the edges' codes.

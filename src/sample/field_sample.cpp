@@ -116,13 +116,92 @@ Cubes collect_nodes(const Field& field, const FieldGrid& grid) {
   return cubes;
 }
 
+// Fields that tell nothing, on a fine grid: only every `stride`-th grid point is asked for at first, and bricks whose
+// points differ are looked at. The surface is followed from there.
+class Sketch {
+ public:
+  Sketch(const Field& field, const FieldGrid& grid, unsigned stride) : field_(field), grid_(grid), stride_(stride) {}
+
+  // Replaces unknown cubes by their bricks that show a change of sign. Keeps the order.
+  void look(Cubes& cubes) {
+    x_.clear(), y_.clear(), z_.clear();
+    for (const GridCube& c : cubes)
+      if (c.unknown) place(c);
+    values_.resize(x_.size());
+    field_.evaluate({x_, y_, z_}, values_);
+    bricks_.clear();
+    std::size_t at = 0;
+    for (const GridCube& c : cubes) {
+      if (!c.unknown) {
+        bricks_.push_back(c);
+        continue;
+      }
+      const unsigned n = c.side / stride_ + 1, bricks = c.side / brick_size;
+      for (std::uint64_t b = 0; b < std::uint64_t{bricks} * bricks * bricks; ++b) {
+        const auto brick = morton_decode(b);
+        if (is_mixed(c, brick, at, n))
+          bricks_.push_back({{c.corner[0] + brick[0] * brick_size, c.corner[1] + brick[1] * brick_size,
+                              c.corner[2] + brick[2] * brick_size},
+                             brick_size});
+      }
+      at += std::size_t{n} * n * n;
+    }
+    cubes.swap(bricks_);
+  }
+
+ private:
+  std::uint32_t index(const GridCube& cube, unsigned axis, unsigned step) const {
+    return std::min(cube.corner[axis] + step * stride_, static_cast<std::uint32_t>(grid_.coordinate[axis].size() - 1));
+  }
+  void place(const GridCube& c) {
+    const unsigned n = c.side / stride_ + 1;
+    for (unsigned i = 0; i < n; ++i)
+      for (unsigned j = 0; j < n; ++j)
+        for (unsigned k = 0; k < n; ++k) {
+          x_.push_back(grid_.coordinate[0][index(c, 0, i)]);
+          y_.push_back(grid_.coordinate[1][index(c, 1, j)]);
+          z_.push_back(grid_.coordinate[2][index(c, 2, k)]);
+        }
+  }
+  bool is_mixed(const GridCube& c, const std::array<std::uint16_t, 3>& brick, std::size_t at, unsigned n) const {
+    const unsigned steps = brick_size / stride_;
+    unsigned inside = 0;
+    for (unsigned i = 0; i <= steps; ++i)
+      for (unsigned j = 0; j <= steps; ++j)
+        for (unsigned k = 0; k <= steps; ++k) {
+          const std::array<unsigned, 3> p{brick[0] * steps + i, brick[1] * steps + j, brick[2] * steps + k};
+          bool within = true;
+          for (unsigned a = 0; a < 3; ++a)
+            within = within && grid_.within(a, static_cast<std::int32_t>(c.corner[a] + p[a] * stride_));
+          inside += within && values_[at + (std::size_t{p[0]} * n + p[1]) * n + p[2]] < 0;
+        }
+    return inside != 0 && inside != (steps + 1) * (steps + 1) * (steps + 1);
+  }
+
+  const Field& field_;
+  const FieldGrid& grid_;
+  unsigned stride_;
+  std::vector<float> x_, y_, z_, values_;
+  Cubes bricks_;
+};
+
+// 1 below 640 grid points along the longest side; above, so many that 240 or more along it are asked for.
+unsigned stride_of(const Field& field, const Grid& grid) {
+  constexpr std::uint32_t fine = 640, enough = 240;
+  const std::uint32_t longest = *std::max_element(grid.size.begin(), grid.size.end());
+  unsigned stride = 1;
+  while (wants_batches(field) && stride < brick_size && longest >= std::max(fine, 2 * stride * enough)) stride *= 2;
+  return stride;
+}
+
 struct Worker {
   TileScanner scanner;
   RootFinder roots;
   std::vector<Bracket> brackets;
   Cubes cubes;
 
-  void sample(const Field& whole, const FieldGrid& grid, std::span<const GridCube> nodes, FieldPart& part) {
+  void sample(const Field& whole, const FieldGrid& grid, std::span<const GridCube> nodes, unsigned stride,
+              FieldPart& part) {
     const bool batches = wants_batches(whole);
     const auto local = batches ? nullptr : whole.specialized(box_of(grid, nodes[0]));
     const Field& field = local ? *local : whole;
@@ -133,6 +212,7 @@ struct Worker {
       descent.split(cubes, side, batches ? kNode : kNode / 2);
       descent.sift(cubes, side / 2);
     }
+    if (stride > 1) Sketch(field, grid, stride).look(cubes);
     scan(field, grid, cubes, part);
   }
   void scan(const Field& field, const FieldGrid& grid, std::span<const GridCube> where, FieldPart& part) {
@@ -205,15 +285,16 @@ void follow(const Field& field, const FieldGrid& grid, std::vector<FieldPart>& p
 SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, const Run& run) {
   const FieldGrid field_grid = make_field_grid(grid, bounds);
   const Cubes nodes = collect_nodes(field, field_grid);
+  const unsigned stride = stride_of(field, grid);
   const std::size_t step = nodes_per_task(field, nodes.size());
   std::vector<FieldPart> parts((nodes.size() + step - 1) / step);
   parallel_for(run, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     Worker worker;
     for (std::size_t i = begin; i < end; ++i)
       worker.sample(field, field_grid, std::span(nodes).subspan(i * step, std::min(step, nodes.size() - i * step)),
-                    parts[i]);
+                    stride, parts[i]);
   });
-  if (!field.encloses_surely()) follow(field, field_grid, parts, run);
+  if (stride > 1 || !field.encloses_surely()) follow(field, field_grid, parts, run);
   SampleSet set = join_parts(grid, parts, run);
   mark_axes(set, run);
   if (!field.has_gradient()) fit_normals(set, run);
