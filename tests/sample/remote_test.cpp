@@ -97,6 +97,22 @@ TEST(RemoteField, ABoundOnTheSlopePrunes) {
   EXPECT_LE(double(far.field->calls), 60 * nodes_of(set.grid));
 }
 
+TEST(RemoteField, ABoundThatIsTooLowTearsNothing) {
+  const Shape shape =
+      shape_from_expression("sqrt((sqrt(x^2+y^2)-1)^2+z^2)-0.35", {}, {{-1.4, -1.4, -0.4}, {1.4, 1.4, 0.4}});
+  expect_same(sampled(remote(shape, 0.55).shape, 256), sampled(shape, 256));
+}
+
+TEST(RemoteField, FineGridsAreSketchedFirst) {
+  for (const char* name : {"torus", "heart"}) {
+    const Shape shape = gallery_shape(name);
+    const Remote far = remote(shape);
+    const SampleSet set = sampled(far.shape, 700);
+    expect_same(set, sampled(shape, 700));
+    EXPECT_LE(double(far.field->asked), 0.1 * points_of(set.grid) + 30.0 * double(set.size())) << name;
+  }
+}
+
 TEST(RemoteField, StaysOneWhereItIsMoved) {
   const Shape shape = transformed(gallery_shape("torus"), Affine::rotate({1, 2, 3}, 40));
   const Remote far = remote(gallery_shape("torus"));

@@ -14,7 +14,8 @@ namespace evenmesh::testing {
 /// Another field's values without its intervals, and a count of what it is asked.
 class RemoteField final : public Field {
  public:
-  /// @param slope  |f(p) − f(q)| ≤ slope · |p − q|: boxes are enclosed by f at their centres; 0: not known
+  /// @param slope  |f(p) − f(q)| ≤ slope · |p − q|, or so it is said: boxes are enclosed by f at their centres; 0: not
+  /// known
   explicit RemoteField(std::shared_ptr<const Field> field, double slope = 0)
       : field_(std::move(field)), slope_(slope) {}
 
@@ -49,6 +50,7 @@ class RemoteField final : public Field {
   double epsilon() const override { return field_->epsilon(); }
   bool has_gradient() const override { return field_->has_gradient(); }
   std::size_t batch_size() const override { return 262'144; }
+  bool encloses_surely() const override { return slope_ == 0; }
 
   mutable std::atomic<std::size_t> calls{0}, asked{0}, single_points{0};  ///< asked: points and boxes
 
