@@ -97,7 +97,9 @@ void add_input_options(CLI::App& app, MeshingArguments& a, const std::string& wh
       ->type_name("EXPR")
       ->allow_extra_args(false)
       ->group(group);
-  app.add_option("-D,--define", a.definitions, "value of a parameter of the expression, or of a uniform or macro of the\nshader, e.g. -D a=0.5 -D size=1,2,1")
+  app.add_option(
+         "-D,--define", a.definitions,
+         "value of a parameter of the expression, or of a uniform or macro of the\nshader, e.g. -D a=0.5 -D size=1,2,1")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false)
       ->group(group);
@@ -105,12 +107,27 @@ void add_input_options(CLI::App& app, MeshingArguments& a, const std::string& wh
     app.add_option(name, text, description)->type_name(type)->group(group);
   };
   option("--entry", a.entry, "NAME", "shader: the function of a vec3 that is negative inside; default map");
-  option("--lipschitz", a.lipschitz, "L",
-         "shader: values differ by L times the distance of their points at most,\n1 for a true distance: empty space is "
-         "skipped; default: not known");
+  option(
+      "--lipschitz", a.lipschitz, "L",
+      "shader: values differ by L times the distance of their points at most,\n1 for a true distance: empty space is "
+      "skipped; default: not known");
   option("--level", a.level, "V", "shader: the surface is where the function has this value; default 0");
   option("--gl-device", a.gl_device, "NAME",
          "renderer that runs shaders: 0, 1, …, software, or part of a name;\ndefault: the best there is");
+}
+
+void add_raster_options(CLI::App& app, MeshingArguments& a) {
+  const std::string group = "What goes in";
+  app.add_option("--raster", a.input.raster,
+                 "the solid that a vertex and a fragment shader draw, files or 'default': with the\nmesh INPUT as "
+                 "their triangles, or without one")
+      ->type_name("VERT FRAG")
+      ->expected(2)
+      ->group(group);
+  app.add_option("--raster-vertices", a.raster_vertices,
+                 "--raster without INPUT: how many vertices are drawn, three for each triangle;\nneeds --bounds")
+      ->type_name("N")
+      ->group(group);
 }
 
 void add_meshing_options(CLI::App& app, MeshingArguments& a) {

@@ -177,13 +177,13 @@ class Setter {
     for (const std::size_t i : d.in_the_way) t_[i].text.clear();
   }
 
-  /// What goes from stage to stage stays. The depth is a variable of ours.
+  /// What goes from stage to stage stays. The depth and the normal are variables of ours.
   void variables(const Declaration& d, TokenRange range) {
     for (const Declarator& name : d.names) {
       const GlslToken& token = t_[name.name];
-      if (token.is("gl_FragDepth")) return blank(range);
       const bool in = d.storage == "in" || d.storage == "attribute";
       (in ? result_.inputs : result_.outputs)[token.text] = {d.type, token.offset};
+      if (token.is("gl_FragDepth") || (!in && token.is("surface_normal"))) blank(range);
     }
   }
 

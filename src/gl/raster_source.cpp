@@ -41,18 +41,14 @@ constexpr std::uint32_t some_loop = 0xffffffffu;  ///< instead of a line
 
 /// What has another name in our shaders, or is reserved in desktop GLSL.
 std::string_view common_replacement(std::string_view word) {
-  static const std::map<std::string_view, std::string_view> words{{"main", "em_user_main"},
-                                                                  {"gl_FragColor", "em_FragColor"},
-                                                                  {"gl_FragData", "em_FragData"},
-                                                                  {"gl_FragDepth", "em_FragDepth"},
-                                                                  {"attribute", "in"},
-                                                                  {"sample", "em_sample"},
-                                                                  {"shared", "em_shared"},
-                                                                  {"buffer", "em_buffer"},
-                                                                  {"patch", "em_patch"},
-                                                                  {"subroutine", "em_subroutine"},
-                                                                  {"active", "em_active"},
-                                                                  {"filter", "em_filter"}};
+  static const std::map<std::string_view, std::string_view> words{
+      {"main", "em_user_main"},         {"surface_normal", "em_surface_normal"},
+      {"gl_FragColor", "em_FragColor"}, {"gl_FragData", "em_FragData"},
+      {"gl_FragDepth", "em_FragDepth"}, {"attribute", "in"},
+      {"sample", "em_sample"},          {"shared", "em_shared"},
+      {"buffer", "em_buffer"},          {"patch", "em_patch"},
+      {"subroutine", "em_subroutine"},  {"active", "em_active"},
+      {"filter", "em_filter"}};
   const auto found = words.find(word);
   return found == words.end() ? word : found->second;
 }
@@ -131,13 +127,11 @@ void check_attributes(const Draft& draft) {
   }
 }
 
-/// Whether the text has a surface normal of its own.
-bool has_normal(const Draft& draft) {
+/// The normal is a variable of ours, set in the one stage where it may be an output.
+void check_normal(const Draft& draft) {
   const auto found = draft.given.outputs.find("surface_normal");
-  if (found == draft.given.outputs.end()) return false;
-  if (found->second.type != "vec3")
+  if (found != draft.given.outputs.end() && found->second.type != "vec3")
     fail_in_glsl(draft.source.text, found->second.offset, "surface_normal is a vec3: out vec3 surface_normal");
-  return true;
 }
 
 std::string assembled(const GlslSource& source, std::string_view ending, Constants constants) {
@@ -165,13 +159,14 @@ RasterSource prepare_raster(GlslText vertex, GlslText fragment, const Values& de
   finish(first, of_vertex, vertex_replacement);
   finish(second, of_fragment, fragment_replacement);
   check_attributes(first);
+  check_normal(second);
   emit_glsl(first.source, first.tokens, first.outline, first.given);
   emit_glsl(second.source, second.tokens, second.outline, second.given);
   raster.vertex = std::move(first.source), raster.fragment = std::move(second.source);
   raster.vertex_text = assembled(raster.vertex, "raster_vertex.glsl", {});
   raster.fragment_text = assembled(raster.fragment, "raster_fragment.glsl",
                                    {{"EM_WRITES_DEPTH", second.words.contains("gl_FragDepth") ? 1 : 0},
-                                    {"EM_WRITES_NORMAL", has_normal(second) ? 1 : 0}});
+                                    {"EM_WRITES_NORMAL", second.words.contains("surface_normal") ? 1 : 0}});
   return raster;
 }
 

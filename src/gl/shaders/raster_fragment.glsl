@@ -39,7 +39,7 @@ void main() {
   bool enters = gl_FrontFacing;
   em_FragDepth = gl_FragCoord.z;
 #if EM_WRITES_NORMAL
-  surface_normal = vec3(0.0);
+  em_surface_normal = vec3(0.0);
 #endif
   em_user_main();
 #if EM_WRITES_DEPTH
@@ -48,7 +48,7 @@ void main() {
 #endif
   uint normal = 0xffffffffu;
 #if EM_WRITES_NORMAL
-  vec3 n = vec3(dot(em_back_x, surface_normal), dot(em_back_y, surface_normal), dot(em_back_z, surface_normal));
+  vec3 n = vec3(dot(em_back_x, em_surface_normal), dot(em_back_y, em_surface_normal), dot(em_back_z, em_surface_normal));
   normal = em_pack(n);
 #if EM_WRITES_DEPTH
   float towards = n[em_axis];
