@@ -126,6 +126,33 @@ Shape read_one(const std::string& name, const GlslOptions& shader, Run& run) {
   return shape_of(read_mesh_or_points(name, run), name);
 }
 
+/// What shaders draw, with the mesh that is the only input, or without.
+Shape read_drawing(const InputArguments& input, const Box& bounds, Run& run) {
+  RasterOptions options{.vertex_count = input.raster_vertices,
+                        .bounds = bounds,
+                        .definitions = input.definitions,
+                        .device = input.gl_device};
+  if (!input.positional.empty()) options.geometry = read_mesh_file("mesh --raster", input.positional[0], run);
+  const auto path = [](const std::string& name) { return name == "default" ? "" : name; };
+  return read_raster(path(input.raster[0]), path(input.raster[1]), std::move(options), "raster");
+}
+
+/// Of --raster, which may have one mesh to draw.
+void check_drawing(const InputArguments& input) {
+  const auto is = [&](std::size_t i, const char* name) { return input.raster[i] == name; };
+  const bool reads_twice = (is(0, "-") && is(1, "-")) ||
+                           (!input.positional.empty() && input.positional[0] == "-" && (is(0, "-") || is(1, "-")));
+  if (reads_twice) throw InvalidInput("only one of the inputs can come from standard input");
+  if (!input.expressions.empty()) throw InvalidInput("--raster draws a mesh or vertices; it takes no expression");
+  if (input.positional.size() > 1)
+    throw InvalidInput(
+        fmt::format("--raster draws one mesh, not '{}' and '{}', too", input.positional[0], input.positional[1]));
+  if (input.positional.empty() && input.raster_vertices == 0)
+    throw InvalidInput("--raster has nothing to draw; name a mesh file, or give --raster-vertices");
+  if (!input.positional.empty() && input.raster_vertices != 0)
+    throw InvalidInput("--raster draws a mesh or --raster-vertices; give one of them");
+}
+
 }  // namespace
 
 Mesh read_mesh_file(const std::string& command, const std::string& name, Run& run) {
@@ -139,6 +166,16 @@ std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::
 }
 
 void check_input(const InputArguments& input, const InputCount& count) {
+  if (!input.raster.empty()) {
+    check_drawing(input);
+  } else if (input.raster_vertices != 0) {
+    throw InvalidInput("--raster-vertices is for --raster; give both or neither");
+  }
+  if (!input.raster.empty() && count.least <= 1) {
+    if (input.entry != InputArguments{}.entry || input.lipschitz || input.level != 0)
+      throw InvalidInput("--entry, --lipschitz and --level are for functions in GLSL; --raster draws");
+    return;
+  }
   const std::size_t given = input.positional.size() + input.expressions.size();
   if (given == 0) {
     throw InvalidInput(
@@ -168,6 +205,7 @@ void check_input(const InputArguments& input, const InputCount& count) {
 }
 
 std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, Run& run) {
+  if (!input.raster.empty()) return {read_drawing(input, bounds, run)};
   std::vector<Shape> shapes;
   for (const std::string& name : input.positional) shapes.push_back(read_one(name, shader_options(input, bounds), run));
   for (const std::string& expression : input.expressions) {

@@ -17,13 +17,15 @@ namespace evenmesh::cli {
 
 /// Everything that may name an input on a command line.
 struct InputArguments {
-  std::vector<std::string> positional;       ///< file, "-", or "gallery:NAME"
-  std::vector<std::string> expressions;      ///< -e
+  std::vector<std::string> positional;             ///< file, "-", or "gallery:NAME"
+  std::vector<std::string> expressions;            ///< -e
   std::map<std::string, std::string> definitions;  ///< -D
   std::string entry = "map";                       ///< --entry, of GLSL files, as all below
   std::optional<double> lipschitz;                 ///< --lipschitz
   double level = 0;                                ///< --level
   std::string gl_device;                           ///< --gl-device
+  std::vector<std::string> raster;                 ///< --raster: vertex and fragment shader, files or "default"
+  std::size_t raster_vertices = 0;                 ///< --raster-vertices
 };
 
 /// How many inputs a command takes.

@@ -22,6 +22,7 @@ void add_mesh_command(CLI::App& app, Action& action) {
       "ball.obj\n"
       "  evenmesh mesh gallery:octic -n 20000 -o octic.ply --report octic.html\n");
   add_input_options(*command, *a, inputs);
+  add_raster_options(*command, *a);
   add_meshing_options(*command, *a);
   command->callback([a, &action] { action = [a] { return run_meshing(*a); }; });
 }
@@ -35,6 +36,7 @@ void add_wrap_command(CLI::App& app, Action& action) {
       "--thickness are closed, wider ones lead inside.\n"
       "Example:\n  evenmesh wrap scan.pts -n 20000 --thickness 4 -o closed.stl\n");
   add_input_options(*command, *a, inputs);
+  add_raster_options(*command, *a);
   add_meshing_options(*command, *a);
   command->callback([a, &action] { action = [a] { return run_meshing(*a); }; });
 }

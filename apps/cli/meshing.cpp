@@ -93,11 +93,13 @@ Json options_json(const MeshingArguments& a, const Operation& operation, unsigne
   if (operation.inputs.most > 1) {
     json["inputs"] = a.input.positional;
     json["expressions"] = a.input.expressions;
-  } else if (a.input.positional.empty()) {
+  } else if (a.input.positional.empty() && a.input.raster.empty()) {
     given("expression", a.input.expressions.at(0));
-  } else {
+  } else if (!a.input.positional.empty()) {
     given("input", a.input.positional[0]);
   }
+  if (!a.input.raster.empty()) json["raster"] = a.input.raster;
+  given("raster_vertices", a.raster_vertices);
   for (const auto& [name, value] : operation.options) json[name] = value;
   for (const auto& [name, value] : a.input.definitions) json["parameters"][name] = value;
   if (a.entry != "map") json["entry"] = a.entry;
@@ -148,6 +150,8 @@ struct Plan {
 
 void read_input_options(MeshingArguments& a) {
   for (const std::string& text : a.definitions) a.input.definitions.insert(definition("-D", text));
+  if (!a.raster_vertices.empty())
+    a.input.raster_vertices = whole_number("--raster-vertices", a.raster_vertices, 3, 2'147'483'647);
   a.input.entry = a.entry, a.input.gl_device = a.gl_device;
   if (!a.lipschitz.empty()) {
     a.input.lipschitz = real_number("--lipschitz", a.lipschitz);

@@ -28,6 +28,7 @@ struct MeshingArguments {
   std::string max_cycle;
   std::string dump_dexels;
   std::string entry = "map", lipschitz, level, gl_device;
+  std::string raster_vertices;
   std::string error;  ///< documented, not available yet
   bool quiet = false, verbose = false;
   bool wrap = false;
@@ -45,6 +46,8 @@ struct Operation {
 
 /// INPUT, -e and -D. @param what  help of INPUT, which may be several files
 void add_input_options(CLI::App& app, MeshingArguments& arguments, const std::string& what);
+/// --raster, of commands that take one input.
+void add_raster_options(CLI::App& app, MeshingArguments& arguments);
 void add_meshing_options(CLI::App& app, MeshingArguments& arguments);
 
 /// Reads the inputs, makes the shape, meshes it, writes mesh and reports, prints the summary; returns the exit status.

@@ -116,6 +116,20 @@ void add_input_options(CLI::App& app, MeshingArguments& a, const std::string& wh
          "renderer that runs shaders: 0, 1, …, software, or part of a name;\ndefault: the best there is");
 }
 
+void add_raster_options(CLI::App& app, MeshingArguments& a) {
+  const std::string group = "What goes in";
+  app.add_option("--raster", a.input.raster,
+                 "the solid that a vertex and a fragment shader draw, files or 'default': with the\nmesh INPUT as "
+                 "their triangles, or without one")
+      ->type_name("VERT FRAG")
+      ->expected(2)
+      ->group(group);
+  app.add_option("--raster-vertices", a.raster_vertices,
+                 "--raster without INPUT: how many vertices are drawn, three for each triangle;\nneeds --bounds")
+      ->type_name("N")
+      ->group(group);
+}
+
 void add_meshing_options(CLI::App& app, MeshingArguments& a) {
   add_what(app, a);
   add_effort(app, a);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "evenmesh/glsl.h"
+#include "evenmesh/raster.h"
 #include "evenmesh/run.h"
 #include "evenmesh/shape.h"
 
@@ -33,7 +34,7 @@ bool is_scene(std::string_view name, std::string_view first_bytes);
 /// @throws UnusableInput  one sentence that names the file and where in it: the path of the JSON member
 ///         ("union[1].transform.scale"), or line and column. Missing files, unknown, missing or contradicting keys,
 ///         wrong types, too deep, too large, nothing solid in it
-/// @throws NotAvailable   a documented node that this version does not contain 
+/// @throws NotAvailable   a documented node that this version does not contain
 /// Guarantee: any sequence of bytes either gives a shape or throws; only regular files are opened.
 /// Cost: O(bytes) time and memory, and that of the files it names; nothing is combined before the shape is sampled.
 Shape read_scene(const std::filesystem::path& path, Run& run = Run::silent());
@@ -48,5 +49,12 @@ Shape parse_scene(std::string_view bytes, std::string_view name, const std::file
 /// @param path  a file, or "-" for standard input
 /// @throws UnusableInput  the file cannot be read; and as shape_from_glsl
 Shape read_glsl(const std::filesystem::path& path, const GlslOptions& options = {});
+
+/// What two shader files draw, as shape_from_raster() takes their texts.
+/// @param vertex, fragment  files; empty paths: the built-in shaders
+/// @param options           all but the texts and their names
+/// @throws UnusableInput  a file cannot be read; and as shape_from_raster
+Shape read_raster(const std::filesystem::path& vertex, const std::filesystem::path& fragment, RasterOptions options,
+                  std::string name = "raster");
 
 }  // namespace evenmesh

@@ -17,6 +17,7 @@
 namespace evenmesh {
 
 class Field;
+class Sampler;
 struct Compound;
 
 /// What is inside a triangle mesh: points around which it winds, or those that it winds around the right way, so that
@@ -28,9 +29,10 @@ struct Shape {
   std::string name;  ///< for messages
   Box bounds;        ///< where the surface is sought, model units; empty: to be found (implicit shapes only)
   /// A triangle mesh is a solid by its winding number (non-zero = inside); a field is a solid where f < 0; a point
-  /// cloud is a surface without an inside; a compound is a solid made of others (solid.h).
+  /// cloud is a surface without an inside; a compound is a solid made of others (solid.h); a sampler is a solid that
+  /// tells where rays meet it (raster.h).
   std::variant<std::shared_ptr<const Mesh>, std::shared_ptr<const Field>, std::shared_ptr<const PointCloud>,
-               std::shared_ptr<const Compound>>
+               std::shared_ptr<const Compound>, std::shared_ptr<const Sampler>>
       what;
   /// The solid leaves its bounds and is closed by them on purpose, or may be (then a cut is worth a warning).
   bool capped_by_bounds = false;
@@ -50,6 +52,10 @@ struct Shape {
   }
   const Compound* compound() const {
     const auto* p = std::get_if<std::shared_ptr<const Compound>>(&what);
+    return p ? p->get() : nullptr;
+  }
+  const Sampler* sampler() const {
+    const auto* p = std::get_if<std::shared_ptr<const Sampler>>(&what);
     return p ? p->get() : nullptr;
   }
 };

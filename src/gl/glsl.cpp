@@ -38,8 +38,9 @@ Shape shape_from_glsl(std::string source, const GlslOptions& options, std::strin
     throw InvalidInput(fmt::format("the Lipschitz constant must be above 0, not {}", *options.lipschitz));
   if (!std::isfinite(options.level)) throw InvalidInput("the level must be a finite number");
   gl::GlslSource prepared = gl::prepare_glsl({std::move(source), name}, options.entry, options.definitions);
-  auto field = std::make_shared<gl::GlslField>(gl::shared_context(options.device), std::move(prepared),
-                                               gl::FieldTraits{0.5 * box.longest_side(), options.level, options.lipschitz});
+  auto field =
+      std::make_shared<gl::GlslField>(gl::shared_context(options.device), std::move(prepared),
+                                      gl::FieldTraits{0.5 * box.longest_side(), options.level, options.lipschitz});
   probe(*field, box);
   return Shape{std::move(name), options.bounds, std::shared_ptr<const Field>(std::move(field))};
 }

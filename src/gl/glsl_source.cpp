@@ -6,6 +6,7 @@
 #include <set>
 
 #include "evenmesh/error.h"
+#include "gl/glsl_emit.h"
 #include "gl/glsl_loops.h"
 #include "gl/glsl_needs.h"
 #include "gl/glsl_outline.h"
@@ -42,64 +43,6 @@ std::string_view replacement(std::string_view word) {
 void blank(std::vector<GlslToken>& tokens, TokenRange range) {
   for (std::size_t i = range.begin; i < range.end; ++i) {
     if (!tokens[i].is_directive()) tokens[i].text.clear();
-  }
-}
-
-/// The same in the body of a macro.
-void replace_in_macro(const GlslText& text, GlslToken& directive) {
-  const DefineParts parts = split_define(directive.text);
-  if (parts.name.empty()) return;
-  std::vector<GlslToken> body = tokenize_macro(text, parts.body, directive.offset);
-  const auto is_odd = [](const GlslToken& t) { return t.is_word() && replacement(t.text) != t.text; };
-  if (std::none_of(body.begin(), body.end(), is_odd)) return;
-  directive.text = "define " + parts.name + parts.arguments;
-  for (const GlslToken& token : body) directive.text.append(" ").append(replacement(token.text));
-}
-
-/// Directives that would be in the way: versions and extensions are ours to choose, lines are counted by us.
-void clean_directives(std::vector<GlslToken>& tokens, const std::map<std::string, std::string>& macros) {
-  for (GlslToken& token : tokens) {
-    if (!token.is_directive()) continue;
-    const std::string name = directive_name(token.text);
-    const DefineParts define = split_define(token.text);
-    const bool given = !define.name.empty() && define.arguments.empty() && macros.contains(define.name);
-    if (name == "version" || name == "extension" || name == "line" || name == "pragma" || given) token.text = "";
-  }
-}
-
-/// Index behind the call of a macro whose name is at `i`; i + 1 where it is none.
-std::size_t call_end(const std::vector<GlslToken>& tokens, std::size_t i, const GlslOutline& outline) {
-  const auto macro = outline.macros.find(tokens[i].text);
-  if (macro == outline.macros.end() || !macro->second.has_arguments) return i + 1;
-  std::size_t depth = 0;
-  for (std::size_t k = i + 1; k < tokens.size() && !tokens[k].is_directive(); ++k) {
-    if (tokens[k].is("(")) ++depth;
-    if (depth == 0) return i + 1;
-    if (tokens[k].is(")") && --depth == 0) return k + 1;
-  }
-  return i + 1;
-}
-
-void emit(GlslSource& source, const std::vector<GlslToken>& tokens, const GlslOutline& outline) {
-  for (std::size_t i = 0; i < tokens.size();) {
-    const GlslToken& token = tokens[i];
-    if (token.is_directive()) {
-      if (!token.text.empty()) {
-        source.code += "#" + token.text + "\n";
-        source.offsets.push_back(token.offset);
-      }
-      ++i;
-      continue;
-    }
-    // The arguments of a macro must not be apart: preprocessors differ in what they make of lines there.
-    std::string line;
-    for (const std::size_t end = call_end(tokens, i, outline); i < end; ++i) {
-      if (tokens[i].text.empty()) continue;
-      (line += line.empty() ? "" : " ") += tokens[i].before + tokens[i].text + tokens[i].after;
-    }
-    if (line.empty()) continue;
-    source.code += line + "\n";
-    source.offsets.push_back(token.offset);
   }
 }
 
@@ -150,21 +93,10 @@ GlslSource prepare_glsl(GlslText text, const std::string& entry,
     if (draws_a_picture(function.name) || needless) blank(tokens, function.tokens);
   }
   const Definitions given = set_uniforms(source.text, tokens, outline, needed, definitions);
-  for (GlslToken& token : tokens) {
-    if (token.is_word()) token.text = replacement(token.text);
-    if (token.is_directive()) replace_in_macro(source.text, token);
-  }
+  replace_words(source.text, tokens, replacement);
   clean_directives(tokens, given.macros);
   limit_loops(source.text, tokens);
-  for (const auto& [name, value] : given.macros) {
-    source.code += fmt::format("#define {} {}\n", name, value);
-    source.offsets.push_back(0);
-  }
-  for (const std::string& line : given.constants) {
-    source.code += line + "\n";
-    source.offsets.push_back(0);
-  }
-  emit(source, tokens, outline);
+  emit_glsl(source, tokens, outline, given);
   return source;
 }
 

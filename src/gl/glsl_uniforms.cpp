@@ -127,8 +127,9 @@ class Reader {
 class Setter {
  public:
   Setter(const GlslText& text, std::vector<GlslToken>& tokens, const GlslOutline& outline,
-         const std::set<std::string>& needed, const std::map<std::string, std::string>& definitions)
-      : text_(text), t_(tokens), outline_(outline), needed_(needed), given_(definitions) {}
+         const std::set<std::string>& needed, const std::map<std::string, std::string>& definitions,
+         const StageUniforms* stage)
+      : text_(text), t_(tokens), outline_(outline), needed_(needed), given_(definitions), stage_(stage) {}
 
   Definitions run() {
     for (const GlslGlobal& global : outline_.globals) declaration(global.tokens);
@@ -163,15 +164,44 @@ class Setter {
       if (d.storage.empty()) return;
       if (d.block && (d.storage == "uniform" || d.storage == "buffer"))
         fail_in_glsl(text_, t_[d.storage_at].offset, "blocks have no values here; declare uniforms one by one");
+      if (stage_ != nullptr && d.block) return;
       return blank(range);  // layout(…) in; and the like
     }
     for (const Declarator& name : d.names) declared_.insert(t_[name.name].text);
-    if (d.storage == "uniform") return uniform(d, range);
+    if (d.storage == "uniform") return is_of_stage(d) ? void() : uniform(d, range);
+    if (stage_ != nullptr) return variables(d, range);
     if (!is_needed(d)) return blank(range);
     if (d.storage != "out")
       fail_in_glsl(text_, t_[d.storage_at].offset, "there are no vertices or pixels here that this could come from");
     t_[d.storage_at].text.clear();
     for (const std::size_t i : d.in_the_way) t_[i].text.clear();
+  }
+
+  /// What goes from stage to stage stays. The depth and the normal are variables of ours.
+  void variables(const Declaration& d, TokenRange range) {
+    for (const Declarator& name : d.names) {
+      const GlslToken& token = t_[name.name];
+      const bool in = d.storage == "in" || d.storage == "attribute";
+      (in ? result_.inputs : result_.outputs)[token.text] = {d.type, token.offset};
+      if (token.is("gl_FragDepth") || (!in && token.is("surface_normal"))) blank(range);
+    }
+  }
+
+  /// Whether these are uniforms that whoever draws sets.
+  bool is_of_stage(const Declaration& d) {
+    if (stage_ == nullptr) return false;
+    std::size_t count = 0;
+    for (const Declarator& name : d.names) {
+      const GlslToken& token = t_[name.name];
+      const auto known = stage_->find(token.text);
+      if (known == stage_->end()) continue;
+      if (d.type != known->second || name.array)
+        fail_in_glsl(text_, token.offset, "this name is taken: uniform " + known->second + " " + token.text);
+      ++count;
+    }
+    if (count > 0 && count < d.names.size())
+      fail_in_glsl(text_, t_[d.storage_at].offset, "declare the uniforms that need a value apart from the others");
+    return count > 0;
   }
 
   void uniform(const Declaration& d, TokenRange range) {
@@ -290,6 +320,7 @@ class Setter {
   const GlslOutline& outline_;
   const std::set<std::string>& needed_;
   const std::map<std::string, std::string>& given_;
+  const StageUniforms* stage_;
   std::set<std::string> declared_{}, used_{}, textures_{};
   std::vector<std::string> uniforms_{}, missing_{};  ///< "float k"
   Definitions result_{};
@@ -298,8 +329,9 @@ class Setter {
 }  // namespace
 
 Definitions set_uniforms(const GlslText& text, std::vector<GlslToken>& tokens, const GlslOutline& outline,
-                         const std::set<std::string>& needed, const std::map<std::string, std::string>& definitions) {
-  return Setter{text, tokens, outline, needed, definitions}.run();
+                         const std::set<std::string>& needed, const std::map<std::string, std::string>& definitions,
+                         const StageUniforms* stage) {
+  return Setter{text, tokens, outline, needed, definitions, stage}.run();
 }
 
 }  // namespace evenmesh::gl

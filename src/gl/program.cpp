@@ -84,12 +84,15 @@ Program Program::link(std::shared_ptr<Context> context, const std::map<unsigned,
     const std::string log = good ? "" : log_of(shader, false);
     glAttachShader(program.id_, shader);
     glDeleteShader(shader);  // with the program
-    if (!good) throw ShaderError(name, log);
+    const Stage stage = kind == GL_VERTEX_SHADER     ? Stage::vertex
+                        : kind == GL_FRAGMENT_SHADER ? Stage::fragment
+                                                     : Stage::compute;
+    if (!good) throw ShaderError(name, log, stage);
   }
   program.context_->step("the compiler of shaders", [id = program.id_] { glLinkProgram(id); });
   GLint good = 0;
   glGetProgramiv(program.id_, GL_LINK_STATUS, &good);
-  if (!good) throw ShaderError(name, log_of(program.id_, true));
+  if (!good) throw ShaderError(name, log_of(program.id_, true), Stage::all);
   program.context_->check("the shader");
   return program;
 }
@@ -105,6 +108,10 @@ Program::~Program() {
 
 int Program::location(const char* uniform) const {
   return glGetUniformLocation(id_, uniform);
+}
+
+int Program::attribute(const char* name) const {
+  return glGetAttribLocation(id_, name);
 }
 
 void Program::set(const char* uniform, float value) const {

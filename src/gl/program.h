@@ -18,15 +18,22 @@ namespace evenmesh::gl {
 /// Names that shaders see as macros; so numbers that C++ and shaders share stand in one place.
 using Constants = std::map<std::string, std::variant<std::int32_t, std::uint32_t, float, std::string>>;
 
+enum class Stage { all, compute, vertex, fragment };
+
 /// A shader does not compile or link.
 class ShaderError : public UnusableInput {
  public:
-  ShaderError(const std::string& name, std::string log)
-      : UnusableInput("the shader " + name + " does not compile on this driver: " + log), log_(std::move(log)) {}
+  /// @param stage  the one that does not compile; all: they do not link
+  ShaderError(const std::string& name, std::string log, Stage stage)
+      : UnusableInput("the shader " + name + " does not compile on this driver: " + log),
+        log_(std::move(log)),
+        stage_(stage) {}
   const std::string& log() const { return log_; }  ///< the driver's words
+  Stage stage() const { return stage_; }
 
  private:
   std::string log_;
+  Stage stage_;
 };
 
 /// The version, the constants, and `text` with each line `#include "file.glsl"` replaced by that file of
@@ -57,6 +64,8 @@ class Program {
   void set(const char* uniform, std::uint32_t value) const;
   void set(const char* uniform, const std::array<float, 3>& value) const;
   void set(const char* uniform, const std::array<float, 4>& value) const;
+  /// Location of a vertex attribute; -1: the shaders do not use it.
+  int attribute(const char* name) const;
   /// Columns first.
   void set_matrix(const char* uniform, const std::array<float, 16>& value) const;
 

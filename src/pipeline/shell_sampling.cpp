@@ -96,7 +96,7 @@ ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& rep
 
 SiteVoxels voxelize(const Shape& shape, const ShellPlan& plan, Run& run) {
   const unsigned margin = std::max(plan.thickness, plan.bridge) + plan.thickness + 2;
-  if (shape.compound())
+  if (shape.compound() || shape.sampler())
     return voxelize_samples(sample_shape(shape, make_grid(shape.bounds, plan.resolution), run), margin, run);
   const VoxelGrid grid = make_voxel_grid(shape.bounds, plan.resolution, margin);
   if (const Mesh* mesh = shape.mesh()) return voxelize_mesh(*mesh, grid, run);

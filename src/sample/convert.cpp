@@ -7,6 +7,7 @@
 
 #include "evenmesh/error.h"
 #include "sample/blocks.h"
+#include "sample/field_parts.h"
 #include "sample/morton.h"
 #include "sample/tri_dexel.h"
 
@@ -41,6 +42,7 @@ struct SourceNormal {
   PackedNormal normal;
   float area[3] = {};
 
+  bool missing() const { return normal.bits == no_normal.bits; }
   bool degenerate() const { return area[0] + area[1] + area[2] == 0; }
 };
 
@@ -54,6 +56,19 @@ std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const
       const Vec3 a = mesh.vertices[t[0]];
       const Vec3 n = normalized(cross((mesh.vertices[t[1]] - a) * scale, (mesh.vertices[t[2]] - a) * scale));
       normals[i].normal = pack_normal(n);
+      for (int axis = 0; axis < 3; ++axis) normals[i].area[axis] = static_cast<float>(sample_area(n, axis, spacing));
+    }
+  });
+  return normals;
+}
+
+std::vector<SourceNormal> source_normals(std::span<const PackedNormal> given, double spacing, const Run& run) {
+  std::vector<SourceNormal> normals(given.size());
+  parallel_for(run, normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      normals[i].normal = given[i];
+      if (normals[i].missing()) continue;
+      const Vec3 n = unpack_normal(given[i]);
       for (int axis = 0; axis < 3; ++axis) normals[i].area[axis] = static_cast<float>(sample_area(n, axis, spacing));
     }
   });
@@ -177,7 +192,7 @@ class BlockWriter {
         area_(set.area.data()),
         normal_(set.normal.data()),
         edge_(set.edge.data()),
-        source_(set.source.data()),
+        source_(set.source.empty() ? nullptr : set.source.data()),
         h_(static_cast<float>(set.grid.spacing)) {
     for (unsigned a = 0; a < 3; ++a)
       for (unsigned up = 0; up < 2; ++up) {
@@ -209,12 +224,13 @@ class BlockWriter {
     const auto along = [&](unsigned a, unsigned cell) { return (cell - half + (axis == a ? c.t : 0.0f)) * h_; };
     x_[out] = along(0, c.code.i()), y_[out] = along(1, c.code.j()), z_[out] = along(2, c.code.k());
     edge_[out] = c.code;
-    source_[out] = c.source;
+    if (source_ != nullptr) source_[out] = c.source;
     const SourceNormal& source = normals_[c.source];
     const bool upward = c.code.lower_end_inside();
     if (c.made || source.degenerate()) {
       normal_[out] = axis_normal_[axis][upward];
       area_[out] = h_ * h_;
+      if (!c.made && source.missing()) normal_[out] = no_normal;
       return;
     }
     normal_[out] = is_upward(source.normal, axis) == upward ? source.normal : opposite(source.normal);
@@ -231,17 +247,15 @@ class BlockWriter {
   std::uint16_t table_[512];
 };
 
-}  // namespace
-
-SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const Run& run) {
+SampleSet sample_with(const TriDexel& solid, const std::vector<SourceNormal>& normals, bool with_sources,
+                      const Run& run) {
   SampleSet set;
   set.grid = solid.grid;
   set.unresolved = solid.unresolved, set.disagreements = solid.disagreements, set.cut_by_bounds = solid.cut_by_bounds;
-  const std::vector<SourceNormal> normals = source_normals(mesh, solid.grid.spacing, run);
   const PlacedAxes placed = place_all(solid, run);
   const std::vector<Piece> pieces = sorted_pieces(placed);
   const std::vector<std::uint32_t> first = make_blocks(pieces, set);
-  resize_samples(set, set.blocks.empty() ? 0 : set.blocks.back().end, true, run);
+  resize_samples(set, set.blocks.empty() ? 0 : set.blocks.back().end, with_sources, run);
   parallel_for(run, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     BlockWriter writer(normals, set);
     for (std::size_t b = begin; b < end; ++b) {
@@ -257,6 +271,22 @@ SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const Run& run)
   });
   mark_axes(set, run);
   sum_area(set, run);
+  return set;
+}
+
+}  // namespace
+
+SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const Run& run) {
+  return sample_with(solid, source_normals(mesh, solid.grid.spacing, run), true, run);
+}
+
+SampleSet sample_dexels(const TriDexel& solid, std::span<const PackedNormal> normals, const Run& run) {
+  SampleSet set = sample_with(solid, source_normals(normals, solid.grid.spacing, run), false, run);
+  const auto missing = [](PackedNormal n) { return n.bits == no_normal.bits; };
+  if (std::any_of(set.normal.begin(), set.normal.end(), missing)) {
+    fit_missing_normals(set, run);
+    sum_area(set, run);
+  }
   return set;
 }
 

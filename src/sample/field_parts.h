@@ -127,5 +127,7 @@ SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, 
 
 /// Normals and areas from the positions of the samples around each: least-squares planes, oriented by the edges' codes.
 void fit_normals(SampleSet& set, const Run& run);
+/// The same for the samples whose normal is no_normal (tri_dexel.h), without their total area.
+void fit_missing_normals(SampleSet& set, const Run& run);
 
 }  // namespace evenmesh

@@ -5,6 +5,7 @@
 
 #include "sample/field_parts.h"
 #include "sample/morton.h"
+#include "sample/tri_dexel.h"
 
 namespace evenmesh {
 namespace {
@@ -134,7 +135,11 @@ Vec3 fitted_normal(const Neighbourhood& near, const Vec3& at, EdgeCode code) {
 
 }  // namespace
 
-void fit_normals(SampleSet& set, const Run& run) {
+namespace {
+
+/// @param wanted  of the samples whose normals are replaced, by their normals
+template <typename Wanted>
+void fit(SampleSet& set, const Run& run, const Wanted& wanted) {
   const double h = set.grid.spacing;
   std::vector<std::uint64_t> codes;
   for (const SampleBlock& b : set.blocks) codes.push_back(morton_code(b.brick[0], b.brick[1], b.brick[2]));
@@ -142,14 +147,27 @@ void fit_normals(SampleSet& set, const Run& run) {
     Neighbourhood near(set, codes);
     for (std::size_t b = begin; b < end; ++b) {
       const SampleBlock& block = set.blocks[b];
+      const auto first = set.normal.begin() + block.begin, last = set.normal.begin() + block.end;
+      if (std::none_of(first, last, wanted)) continue;
       near.gather(block);
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
+        if (!wanted(set.normal[s])) continue;
         const Vec3 n = fitted_normal(near, Vec3{set.x[s], set.y[s], set.z[s]} / h, set.edge[s]);
         set.normal[s] = pack_normal(n);
         set.area[s] = static_cast<float>(sample_area(n, static_cast<int>(set.edge[s].axis()), h));
       }
     }
   });
+}
+
+}  // namespace
+
+void fit_normals(SampleSet& set, const Run& run) {
+  fit(set, run, [](PackedNormal) { return true; });
+}
+
+void fit_missing_normals(SampleSet& set, const Run& run) {
+  fit(set, run, [](PackedNormal n) { return n.bits == no_normal.bits; });
 }
 
 }  // namespace evenmesh

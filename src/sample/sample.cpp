@@ -9,6 +9,7 @@
 #include "sample/distance_field.h"
 #include "sample/field_parts.h"
 #include "sample/tri_dexel.h"
+#include "shape/sampler.h"
 
 namespace evenmesh {
 namespace {
@@ -64,6 +65,7 @@ SampleSet sample_any(const Shape& shape, const Grid& grid, const Box& bounds, Ru
   if (const Compound* compound = shape.compound())
     return compound->kind == Compound::Kind::offset ? sample_offset(*compound, grid, bounds, run)
                                                     : sample_boolean(*compound, grid, run);
+  if (const Sampler* sampler = shape.sampler()) return sampler->sample(grid, bounds, run);
   if (!shape.mesh()) throw InvalidInput(shape.name + " has no inside: give the shape a mesh or a field");
   return sample_dexels(scan_mesh(*shape.mesh(), grid, run, bounds, shape.winding), *shape.mesh(), run);
 }

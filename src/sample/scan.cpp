@@ -347,7 +347,10 @@ TriDexel scan_rays(const Mesh& mesh, const Grid& grid, Run& run, Winding winding
 TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run, const Box& bounds, Winding winding) {
   std::array<DexelAxis, 3> raw;
   TriDexel solid = scan(mesh, grid, run, bounds, winding, raw);
-  if (!solid.closed) vote(solid, raw, Witnesses(mesh, grid.spacing, winding, run), run);
+  if (!solid.closed) {
+    const Witnesses witnesses(mesh, grid.spacing, winding, run);
+    vote(solid, raw, &witnesses, run);
+  }
   return solid;
 }
 

@@ -16,11 +16,12 @@ namespace evenmesh {
 
 /// Where a ray enters or leaves the solid.
 struct DexelCrossing {
-  std::uint32_t source = 0;  ///< triangle of the input mesh; of a neighbouring crossing when `made`
-  float t = 0;               ///< position within the cell, [0, 1)
-  std::uint16_t cell = 0;    ///< grid point just below the crossing, index along the ray
-  bool enters = false;       ///< the grid point above is inside, the one below outside
-  bool made = false;         ///< no triangle is here: put by vote or by the bounds, normal along the axis
+  std::uint32_t source =
+      0;        ///< triangle of the input mesh, or number of a normal; of a neighbouring crossing when `made`
+  float t = 0;  ///< position within the cell, [0, 1)
+  std::uint16_t cell = 0;  ///< grid point just below the crossing, index along the ray
+  bool enters = false;     ///< the grid point above is inside, the one below outside
+  bool made = false;       ///< no triangle is here: put by vote or by the bounds, normal along the axis
 };
 
 /// Eight neighbouring rows of rays; the unit of parallel work. CSR over its rays, crossings sorted by cell.
@@ -73,13 +74,23 @@ TriDexel scan_rays(const Mesh& mesh, const Grid& grid, Run& run, Winding winding
 
 class Witnesses;
 
-/// Replaces the three directions' opinions, where they differ, by the majority of theirs and the witnesses', point by
-/// point, and rebuilds the crossings from that one sign grid. `raw[a]` holds every crossing of axis a as it was found, for
-/// the positions of new crossings.
+/// Replaces the three directions' opinions, where they differ, by the majority of theirs and the witnesses', if there
+/// are, point by point, and rebuilds the crossings from that one sign grid. `raw[a]` holds every crossing of axis a as
+/// it was found, for the positions of new crossings.
+/// @param rounding  cells; points in dispute next to which, so near, a ray has a crossing do not count as
+/// disagreements,
+///                  and such crossings are moved
 /// Cost: O(grid points / 64 + crossings), and 0.3 µs for every point in dispute.
-void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const Witnesses& witnesses, const Run& run);
+void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const Witnesses* witnesses, const Run& run,
+          double rounding = 0);
 
 /// The crossings of a solid in blocks, with the normals of the mesh it was scanned from.
 SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const Run& run);
+
+/// Where a crossing has no normal: one is fitted to the samples around it.
+inline constexpr PackedNormal no_normal{0xffffffffu};
+
+/// The same with the normals that DexelCrossing::source counts; of either orientation. The samples have no sources.
+SampleSet sample_dexels(const TriDexel& solid, std::span<const PackedNormal> normals, const Run& run);
 
 }  // namespace evenmesh

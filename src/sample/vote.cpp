@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <tuple>
 
 #include "sample/tri_dexel.h"
@@ -20,9 +21,17 @@ struct Layer {
   void clear(std::size_t words) { bits.assign(words, 0); }
 };
 
+// Who is asked besides the three directions.
+struct Electorate {
+  const std::array<DexelAxis, 3>& raw;
+  const Witnesses* witnesses = nullptr;
+  double rounding = 0;  // cells
+};
+
 // What three directions and their majority say of one layer.
 struct Opinions {
   Layer axis[3], majority;
+  std::size_t disputed = 0;  // points, less those settled by rounding
 };
 
 // One grid edge whose crossing changes.
@@ -44,9 +53,9 @@ struct Votes {
 // The layers [first, last] of a solid.
 class LayerVoter {
  public:
-  LayerVoter(const TriDexel& solid, const Witnesses& witnesses, std::uint32_t first, std::uint32_t last)
+  LayerVoter(const TriDexel& solid, const Electorate& electorate, std::uint32_t first, std::uint32_t last)
       : solid_(solid),
-        witnesses_(witnesses),
+        electorate_(electorate),
         nx_(solid.grid.size[0]),
         ny_(solid.grid.size[1]),
         width_((nx_ + 63) / 64),
@@ -63,6 +72,7 @@ class LayerVoter {
     read_y(k, o.axis[1]);
     o.axis[2].bits.swap(along_z_[k - first_].bits);
     o.majority.clear(width_ * ny_);
+    o.disputed = 0;
     for (std::size_t w = 0; w < width_ * ny_; ++w) {
       const Word a = o.axis[0].bits[w], b = o.axis[1].bits[w], c = o.axis[2].bits[w];
       o.majority.bits[w] = (a & b) | (a & c) | (b & c);
@@ -70,17 +80,12 @@ class LayerVoter {
         const int bit = std::countr_zero(left);
         const int own = static_cast<int>((a >> bit & 1) + (b >> bit & 1) + (c >> bit & 1));
         settle(o.majority.bits[w], w, bit, k, own);
+        o.disputed += is_rounding(static_cast<std::uint32_t>(64 * (w % width_)) + static_cast<std::uint32_t>(bit),
+                                  static_cast<std::uint32_t>(w / width_), k)
+                          ? 0
+                          : 1;
       }
     }
-  }
-
-  std::size_t disputed(const Opinions& o) const {
-    std::size_t count = 0;
-    for (std::size_t w = 0; w < width_ * ny_; ++w) {
-      const Word a = o.axis[0].bits[w];
-      count += static_cast<std::size_t>(std::popcount((a ^ o.axis[1].bits[w]) | (a ^ o.axis[2].bits[w])));
-    }
-    return count;
   }
 
   // Edits of the edges within a layer.
@@ -157,27 +162,40 @@ class LayerVoter {
 
   // Asks the witnesses about a point in dispute.
   void settle(Word& word, std::size_t w, int bit, std::uint32_t k, int own) const {
+    if (electorate_.witnesses == nullptr) return;  // the majority of the three
     const double x = static_cast<double>(64 * (w % width_)) + bit, y = static_cast<double>(w / width_);
     // The grid's own rays meet the point itself: three votes each.
-    const int votes = 3 * own + witnesses_.inside(solid_.grid.point(x, y, k));
+    const int votes = 3 * own + electorate_.witnesses->inside(solid_.grid.point(x, y, k));
     const bool inside = 2 * votes > 3 * 3 + Witnesses::directions;
     word = inside ? word | Word{1} << bit : word & ~(Word{1} << bit);
   }
 
+  // Whether a ray has a crossing so near to the point that rounding may have moved it to the other side.
+  bool is_rounding(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+    if (!(electorate_.rounding > 0)) return false;
+    const std::array<std::uint32_t, 3> at{x, y, z};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto p = static_cast<std::size_t>(dexel_p_axis[a]), q = static_cast<std::size_t>(dexel_q_axis[a]);
+      for (const DexelCrossing& hit : electorate_.raw[a].ray(at[p], at[q]))
+        if (std::abs(hit.cell + double(hit.t) - at[a]) <= electorate_.rounding) return true;
+    }
+    return false;
+  }
+
   const TriDexel& solid_;
-  const Witnesses& witnesses_;
+  const Electorate& electorate_;
   std::uint32_t nx_, ny_, width_, first_;
   std::vector<Layer> along_z_;
 };
 
-Votes count_votes(const TriDexel& solid, const Witnesses& witnesses, std::uint32_t first, std::uint32_t end) {
+Votes count_votes(const TriDexel& solid, const Electorate& electorate, std::uint32_t first, std::uint32_t end) {
   Votes votes;
   const std::uint32_t top = solid.grid.size[2] - 1, last = std::min(end, top);
-  LayerVoter voter(solid, witnesses, first, last);
+  LayerVoter voter(solid, electorate, first, last);
   Opinions low, high;
   voter.read(first, low);
   for (std::uint32_t k = first; k < end; ++k) {
-    votes.disagreements += voter.disputed(low);
+    votes.disagreements += low.disputed;
     voter.edit_within(k, low, votes.edits);
     if (k == top) break;
     voter.read(k + 1, high);
@@ -190,7 +208,8 @@ Votes count_votes(const TriDexel& solid, const Witnesses& witnesses, std::uint32
 // Fills in where new crossings lie.
 class Rebuilder {
  public:
-  Rebuilder(TriDexel& solid, const std::array<DexelAxis, 3>& raw) : solid_(solid), raw_(raw) {}
+  Rebuilder(TriDexel& solid, const Electorate& electorate)
+      : solid_(solid), raw_(electorate.raw), rounding_(electorate.rounding) {}
 
   // Applies the edits of one slab, sorted by ray and cell.
   void apply(std::size_t axis, std::size_t index, std::span<const Edit> edits) {
@@ -224,10 +243,15 @@ class Rebuilder {
     out.insert(out.end(), old.begin() + static_cast<std::ptrdiff_t>(i), old.end());
   }
 
-  // A hit that was found on the edge, else its middle.
+  // A hit that was found on the edge, or so near to it that rounding put it there, else its middle.
   DexelCrossing new_crossing(std::size_t axis, const Edit& edit) const {
     for (const DexelCrossing& hit : raw_[axis].ray(edit.p, edit.q))
       if (hit.cell == edit.cell) return {hit.source, hit.t, edit.cell, edit.enters, hit.made};
+    for (const DexelCrossing& hit : raw_[axis].ray(edit.p, edit.q)) {
+      const double t = hit.cell + double(hit.t) - edit.cell;
+      if (rounding_ > 0 && t >= -rounding_ && t <= 1 + rounding_)
+        return {hit.source, t < 0.5 ? 0.0f : 0x1.fffffep-1f, edit.cell, edit.enters, hit.made};
+    }
     return {nearest_source(axis, edit), 0.5f, edit.cell, edit.enters, true};
   }
 
@@ -249,16 +273,19 @@ class Rebuilder {
 
   TriDexel& solid_;
   const std::array<DexelAxis, 3>& raw_;
+  double rounding_;
 };
 
 }  // namespace
 
-void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const Witnesses& witnesses, const Run& run) {
+void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const Witnesses* witnesses, const Run& run,
+          double rounding) {
+  const Electorate electorate{raw, witnesses, rounding};
   const std::uint32_t layers = solid.grid.size[2];
   std::vector<Votes> votes((layers + kLayers - 1) / kLayers);
   parallel_tasks(run, votes.size(), [&](std::size_t i) {
     const auto first = static_cast<std::uint32_t>(i) * kLayers;
-    votes[i] = count_votes(solid, witnesses, first, std::min(first + kLayers, layers));
+    votes[i] = count_votes(solid, electorate, first, std::min(first + kLayers, layers));
   });
   Edits edits;
   for (Votes& v : votes) {
@@ -268,7 +295,7 @@ void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const Witnesses&
   parallel_tasks(run, 3, [&](std::size_t axis) {
     std::vector<Edit>& all = edits[axis];
     std::sort(all.begin(), all.end(), [](const Edit& a, const Edit& b) { return a.key() < b.key(); });
-    Rebuilder rebuilder(solid, raw);
+    Rebuilder rebuilder(solid, electorate);
     for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
       const std::size_t slab = all[begin].q / brick_size;
       while (end < all.size() && all[end].q / brick_size == slab) ++end;

@@ -179,6 +179,8 @@ Box common_bounds(const std::vector<Shape>& operands) {
 Box find_bounds(const Shape& shape) {
   if (!shape.bounds.empty()) return shape.bounds;
   if (const Field* field = shape.field()) return find_bounds(*field);
+  if (shape.sampler())
+    throw InvalidInput("'" + shape.name + "' does not tell where it is: give --bounds x0,y0,z0,x1,y1,z1");
   const Compound* compound = shape.compound();
   if (compound == nullptr) return shape.bounds;
   if (compound->kind == Compound::Kind::intersect) return common_bounds(compound->operands);

@@ -6,6 +6,7 @@
 #include "evenmesh/error.h"
 #include "shape/affine_field.h"
 #include "shape/bounds.h"
+#include "shape/sampler.h"
 
 namespace evenmesh {
 namespace {
@@ -113,6 +114,11 @@ Shape transformed(const Shape& shape, const Affine& transform) {
     return moved;
   }
   Shape moved = shape;
+  if (const Sampler* sampler = shape.sampler()) {
+    moved.bounds = transformed_box(shape.bounds, transform);
+    moved.what = sampler->moved(transform);
+    return moved;
+  }
   auto field = std::get<std::shared_ptr<const Field>>(shape.what);
   // The box that cuts the solid turns with it.
   if (shape.capped_by_bounds && !shape.bounds.empty()) field = boxed_field(std::move(field), shape.bounds);

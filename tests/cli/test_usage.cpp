@@ -31,11 +31,12 @@ TEST_F(Usage, HelpListsEveryCommand) {
 TEST_F(Usage, HelpOfMeshDescribesEveryOptionOnce) {
   const std::string help = run({"mesh", "--help"}).out;
   for (const char* option :
-       {"--output",      "--vertices",   "--edge-length", "--error",      "--method",     "--resolution", "--thickness",
-        "--bounds",      "--quality",    "--optimizer",   "--iterations", "--tolerance",  "--start",      "--seed",
-        "--connect",     "--topology",   "--features",    "--density",    "--threads",    "--backend",    "--report",
-        "--json",        "--quiet",      "--verbose",     "--progress",   "--expression", "--define",     "--entry",
-        "--dump-dexels", "--dump-shell", "--outliers",    "--placement",  "--max-cycle",  "--format"}) {
+       {"--output",      "--vertices",   "--edge-length", "--error",     "--method",     "--resolution",
+        "--thickness",   "--bounds",     "--quality",     "--optimizer", "--iterations", "--tolerance",
+        "--start",       "--seed",       "--connect",     "--topology",  "--features",   "--density",
+        "--threads",     "--backend",    "--report",      "--json",      "--quiet",      "--verbose",
+        "--progress",    "--expression", "--define",      "--entry",     "--raster",     "--raster-vertices",
+        "--dump-dexels", "--dump-shell", "--outliers",    "--placement", "--max-cycle",  "--format"}) {
     const std::size_t first = help.find(std::string(option) + " ");
     ASSERT_TRUE(first != std::string::npos || help.find(std::string(option) + "\n") != std::string::npos) << option;
   }
@@ -111,6 +112,14 @@ TEST_F(Usage, WrongUsageIsStatus2) {
       {{"mesh", in, "-o", "x.ply", "--progress", "maybe"}, "--progress"},
       {{"mesh", in, "-o", "x.ply", "-q", "-v"}, "-q and -v"},
       {{"mesh", in, "-o", "x.ply", "-D", "a=1"}, "-D"},
+      {{"mesh", "--raster", "default", "-o", "x.ply"}, "--raster"},
+      {{"mesh", "--raster", "default", "default", "-o", "x.ply"}, "nothing to draw"},
+      {{"mesh", "--raster", "default", "default", "a.obj", "a.obj", "-o", "x.ply"}, "one mesh"},
+      {{"mesh", "--raster", "default", "default", "a.obj", "-e", "x", "-o", "x.ply"}, "no expression"},
+      {{"mesh", "--raster", "default", "default", "a.obj", "--raster-vertices", "6", "-o", "x.ply"}, "one of them"},
+      {{"mesh", "--raster", "-", "-", "a.obj", "-o", "x.ply"}, "standard input"},
+      {{"mesh", "a.obj", "--raster-vertices", "6", "-o", "x.ply"}, "--raster-vertices"},
+      {{"mesh", "--raster", "default", "default", in, "-o", "x.ply"}, "takes a mesh file"},
       {{"mesh", "-e", "x", "-D", "a", "-o", "x.ply"}, "name=value"},
       {{"mesh", "-e", "x^2+(", "-o", "x.ply"}, "column"},
       {{"mesh", "-e", "a*x", "-o", "x.ply"}, "column"},

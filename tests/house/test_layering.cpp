@@ -37,6 +37,7 @@ const std::map<std::string, std::string> public_headers{
     {"mesh_shape.h", "pipeline"}, {"render.h", "view"},     {"points.h", "geometry"},
     {"volume.h", "geometry"},     {"solid.h", "shape"},     {"scene.h", "scene"},
     {"repair.h", "geometry"},     {"dexels.h", "shape"},    {"glsl.h", "gl"},
+    {"raster.h", "gl"},
 };
 
 Names visible_from(const std::string& room) {
@@ -61,7 +62,7 @@ bool may_include_public(const std::string& room, const std::string& header) {
   // Reports are about the pipeline's result: they see its public header, not its room.
   if (room == "view" && header == "mesh_shape.h") return true;
   // Scenes name shaders; what runs them stays behind the public header.
-  if (room == "scene" && header == "glsl.h") return true;
+  if (room == "scene" && (header == "glsl.h" || header == "raster.h")) return true;
   return visible_from(room).contains(found->second);
 }
 

@@ -22,6 +22,7 @@ const vec4 em_FragCoord = vec4(0.5, 0.5, 0.0, 1.0);
 vec4 em_FragColor;
 vec4 em_FragData[8];
 float em_FragDepth;
+vec3 em_surface_normal;
 float em_derivative(float f) { return 0.0; }
 vec2 em_derivative(vec2 f) { return vec2(0.0); }
 vec3 em_derivative(vec3 f) { return vec3(0.0); }

@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "evenmesh/error.h"
+#include "evenmesh/raster.h"
 
 namespace evenmesh {
 namespace {
 
 TEST(GlslOff, IsRefused) {
   EXPECT_THROW(shape_from_glsl("float map(vec3 p) { return p.x; }"), NotAvailable);
+  EXPECT_THROW(shape_from_raster({}), NotAvailable);
   EXPECT_THROW(gl_renderer(), NotAvailable);
   EXPECT_FALSE(gl_stuck());
   EXPECT_TRUE(is_glsl("a.glsl", ""));

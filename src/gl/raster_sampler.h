@@ -1,0 +1,32 @@
+#pragma once
+/// What shaders draw, as samples of a solid.
+
+#include <memory>
+#include <vector>
+
+#include "gl/raster_device.h"
+#include "sample/tri_dexel.h"
+#include "shape/sampler.h"
+
+namespace evenmesh::gl {
+
+class RasterSampler final : public Sampler {
+ public:
+  /// @param bounds  of the model, what shaders are told
+  RasterSampler(std::shared_ptr<RasterDevice> device, std::string name, const Box& bounds, const Affine& placement = {})
+      : device_(std::move(device)), name_(std::move(name)), bounds_(bounds), placement_(placement) {}
+
+  SampleSet sample(const Grid& grid, const Box& bounds, Run& run) const override;
+  std::shared_ptr<const Sampler> moved(const Affine& transform) const override;
+
+  /// The crossings, and the normals that they count. Cost: two passes of drawing per 512² rays at most, then sorting.
+  TriDexel scan(const Grid& grid, const Box& bounds, std::vector<PackedNormal>& normals, Run& run) const;
+
+ private:
+  std::shared_ptr<RasterDevice> device_;
+  std::string name_;
+  Box bounds_;
+  Affine placement_;  ///< of the model in the world
+};
+
+}  // namespace evenmesh::gl
