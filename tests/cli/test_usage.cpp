@@ -159,7 +159,6 @@ TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
   }
   const std::vector<Words> options{
       {"--density", "curvature"},
-      {"--backend", "gl"},
       {"--error", "0.001"},
   };
   for (const Words& option : options) {
