@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "evenmesh/glsl.h"
 #include "evenmesh/io.h"
 #include "evenmesh/render.h"
 #include "evenmesh/solid.h"
@@ -28,7 +29,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// Options that are documented but not built yet: never silently ignored.
 void refuse_planned_options(const MeshingArguments& a) {
   if (!a.error.empty()) not_available("--error");
-  choice("--backend", a.backend, {"cpu"}, {"gl"});
   if (a.density == "curvature" || std::filesystem::exists(a.density)) not_available("--density " + a.density);
 }
 
@@ -145,6 +145,7 @@ struct Plan {
   std::optional<double> regularize;  ///< radius
   MeshOutput output;
   unsigned threads = 0;
+  bool on_gl = false;  ///< expressions too
   Talk talk = Talk::normal;
 };
 
@@ -174,6 +175,7 @@ Plan check(MeshingArguments& a, const Operation& operation) {
   }
   plan.threads = static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024));
   choice("--progress", a.progress, {"auto", "on", "off"});
+  plan.on_gl = choice("--backend", a.backend, {"cpu", "gl"}) == 1;
   if (a.quiet && a.verbose) throw InvalidInput("-q and -v contradict each other; give one of them");
   plan.talk = a.quiet ? Talk::quiet : a.verbose ? Talk::verbose : Talk::normal;
   plan.output = check_mesh_output(a.output, a.format);
@@ -196,6 +198,17 @@ Shape without_outliers(const Shape& shape, double deviations, Talk talk, Run& ru
   PointCloud cloud = remove_outliers(*shape.points(), {.deviations = deviations}, run);
   if (talk != Talk::quiet) say("note", fmt::format("{} of {} points left out", given - cloud.points.size(), given));
   return shape_from_points(std::move(cloud), shape.name);
+}
+
+/// Expressions move to OpenGL; inputs that have none are said and left as they are.
+void move_to_gl(std::vector<Shape>& shapes, const std::string& device, Talk talk) {
+  bool any = false;
+  for (Shape& shape : shapes) {
+    shape = on_gl(shape, device);
+    any = any || runs_on_gl(shape);
+  }
+  if (!any && talk != Talk::quiet)
+    say("note", "--backend gl: the input has no expression and no shader; everything runs on the CPU");
 }
 
 bool tell_notices(const Report& report, Talk talk) {
@@ -224,6 +237,7 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
   {
     Terminal terminal(run, plan.talk, a.progress);
     std::vector<Shape> inputs = read_shapes(a.input, plan.options.bounds.value_or(Box{}), run);
+    if (plan.on_gl) move_to_gl(inputs, a.input.gl_device, plan.talk);
     Shape shape = operation.combine ? operation.combine(std::move(inputs)) : std::move(inputs.at(0));
     if (plan.outliers) shape = without_outliers(shape, *plan.outliers, plan.talk, run);
     if (plan.regularize) shape = opening(closing(std::move(shape), *plan.regularize), *plan.regularize);

@@ -76,7 +76,7 @@ void add_how(CLI::App& app, MeshingArguments& a) {
     app.add_option(name, text, description)->type_name(type)->group(group);
   };
   option("-j,--threads", a.threads, "N", "number of threads, 0 to 1024; default 0 = one per processor");
-  option("--backend", a.backend, "NAME", "cpu (gl: not available); default cpu");
+  option("--backend", a.backend, "NAME", "what evaluates expressions: cpu|gl (OpenGL, see --gl-device); default cpu");
   option("--report", a.report, "FILE", "write pictures and figures of the run as one HTML page");
   option("--json", a.json, "FILE", "write the figures of the run as JSON, - for standard output");
   option("--dump-dexels", a.dump_dexels, "FILE", "write the sampled solid as dexels (.tdx), an input again");
@@ -113,7 +113,7 @@ void add_input_options(CLI::App& app, MeshingArguments& a, const std::string& wh
       "skipped; default: not known");
   option("--level", a.level, "V", "shader: the surface is where the function has this value; default 0");
   option("--gl-device", a.gl_device, "NAME",
-         "renderer that runs shaders: 0, 1, …, software, or part of a name;\ndefault: the best there is");
+         "renderer that runs shaders, and expressions with --backend gl: 0, 1, …, software, or part of a name;\ndefault: the best there is");
 }
 
 void add_raster_options(CLI::App& app, MeshingArguments& a) {

@@ -1,6 +1,6 @@
 #pragma once
-/// Shapes from functions written in GLSL, evaluated by OpenGL: on a graphics card, or on Mesa's llvmpipe, which needs
-/// none.
+/// Shapes from functions written in GLSL, and expressions, evaluated by OpenGL: on a graphics card, or on Mesa's
+/// llvmpipe, which needs none.
 
 #include <map>
 #include <optional>
@@ -44,6 +44,24 @@ struct GlslOptions {
 /// within 20 s is given up: an error, and gl_stuck() from then on.
 /// Cost: compiles the shader, about 0.1 s; each later evaluation runs on the device.
 Shape shape_from_glsl(std::string source, const GlslOptions& options = {}, std::string name = "shader");
+
+/// The shape with its expressions evaluated by OpenGL, those within transforms and compounds too: values and gradients
+/// come from the device, in the same order of operations as on the CPU; single points and what is known of boxes stay
+/// on the CPU. The surface is the same up to rounding.
+///
+/// Built-in shapes are expressions, except the fractals julia, mandelbulb-7 and mandelbulb-8. These stay on the CPU, as
+/// do meshes, points, indicator functions, and expressions of more than 2,000 operations; shaders stay where they are.
+/// If there is nothing to move, the shape is returned as it is, and no device is started.
+/// @param device  as GlslOptions::device
+/// @throws UnusableInput  no driver, or it does not compile this (also later, when the shape is sampled: it stops
+///                        working)
+/// @throws InvalidInput   no such device
+/// @throws NotAvailable   this build has no OpenGL
+/// Cost: compiles two shaders for each expression, some 0.1 s.
+Shape on_gl(const Shape& shape, const std::string& device = "");
+
+/// Whether any part of the shape is evaluated by OpenGL.
+bool runs_on_gl(const Shape& shape);
 
 /// Whether a file is GLSL: its name ends with .glsl, .frag, .fs or .fsh, or it begins like a shader.
 /// @param first_bytes  4096 or more of the file, or all of it

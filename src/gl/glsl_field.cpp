@@ -5,23 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "evenmesh/error.h"
-#include "gl/buffer.h"
-#include "gl/program.h"
+#include "gl/point_program.h"
 
 namespace evenmesh::gl {
 namespace {
 
-constexpr std::uint32_t group = 64;
 constexpr std::size_t rows_of_gradient = 7;
-constexpr std::size_t first_chunk = 4096, largest_chunk = std::size_t{1} << 20;  ///< values per dispatch
-constexpr double longest_dispatch = 0.25;                                        ///< seconds, aimed at
 constexpr float step_factor = 1.0f / 1024;
 constexpr std::uint32_t some_loop = 0xffffffffu;  ///< instead of a line
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -33,7 +28,7 @@ float step_at(float x, float y, float z, float scale) {
 }
 
 std::string shader_text(const GlslSource& source) {
-  const Constants constants{{"EM_GROUP", group},
+  const Constants constants{{"EM_GROUP", PointProgram::group},
                             {"EM_SOME_LOOP", some_loop},
                             {"EM_BUDGET", loop_budget},
                             {"EM_STEP", step_factor},
@@ -51,40 +46,19 @@ std::string endless(const std::string& name, std::uint32_t line) {
 
 }  // namespace
 
-/// What a field has on the device.
-struct GlslField::Device {
-  Program program{};
-  Buffer<float> points{}, values{};
-  Buffer<std::uint32_t> late{};
-  std::size_t chunk = first_chunk;  ///< values that the next dispatch may take
-
-  void reserve(const std::shared_ptr<Context>& context, std::size_t point_count, std::size_t value_count) {
-    if (points.size() < 3 * point_count) points = Buffer<float>(context, 3 * point_count);
-    if (values.size() < value_count) values = Buffer<float>(context, value_count);
-  }
-
-  void learn(std::size_t count, double seconds) {
-    if (count < chunk) return;
-    if (seconds < longest_dispatch / 4) chunk = std::min(chunk * 4, largest_chunk);
-    if (seconds > longest_dispatch) chunk = std::max(chunk / 4, first_chunk / 64);
-  }
-};
-
 GlslField::GlslField(std::shared_ptr<Context> context, GlslSource source, const FieldTraits& traits)
     : source_(std::move(source)),
       context_(std::move(context)),
-      device_(std::make_unique<Device>()),
+      device_(std::make_unique<PointProgram>()),
       scale_(std::exp2(std::floor(std::log2(std::clamp(traits.scale, 1e-30, 1e30))))),
       lipschitz_(traits.lipschitz) {
   const std::string text = shader_text(source_);
   try {
     context_->run([&] {
-      device_->program = Program::compute(context_, text, source_.text.name);
-      device_->program.set("em_two", 2);
-      device_->program.set("em_scale", static_cast<float>(scale_));
-      device_->program.set("em_level", static_cast<float>(traits.level));
-      device_->late = Buffer<std::uint32_t>(context_, 1);
-      device_->late.fill_with_zeros();
+      *device_ = PointProgram(context_, text, source_.text.name);
+      device_->program().set("em_two", 2);
+      device_->program().set("em_scale", static_cast<float>(scale_));
+      device_->program().set("em_level", static_cast<float>(traits.level));
     });
   } catch (const ShaderError& error) {
     throw UnusableInput(source_.explain(error.log()));
@@ -93,31 +67,11 @@ GlslField::GlslField(std::shared_ptr<Context> context, GlslSource source, const 
 
 GlslField::~GlslField() = default;
 
-/// Values of some rows (see field.glsl); rows × points of them, row after row in `values`.
-void GlslField::run(const PointBatch& points, std::size_t rows, std::span<const std::span<float>> values) const {
-  const std::string what = "the shader " + source_.text.name;
-  Device& device = *device_;
-  for (std::size_t done = 0; done < points.x.size();) {
-    const std::size_t count = std::min(std::max<std::size_t>(device.chunk / rows, 1), points.x.size() - done);
-    device.reserve(context_, count, count * rows);
-    device.points.upload(points.x.subspan(done, count), 0);
-    device.points.upload(points.y.subspan(done, count), count);
-    device.points.upload(points.z.subspan(done, count), 2 * count);
-    device.points.bind(0), device.values.bind(1), device.late.bind(2);
-    device.program.set("em_count", static_cast<std::uint32_t>(count));
-    const auto start = std::chrono::steady_clock::now();
-    device.program.dispatch(what, static_cast<unsigned>((count + group - 1) / group), static_cast<unsigned>(rows));
-    context_->finish(what);
-    device.learn(count * rows, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    for (std::size_t row = 0; row < rows; ++row) device.values.download(values[row].subspan(done, count), row * count);
-    std::uint32_t line = 0;
-    device.late.download({&line, 1});
-    if (line != 0) {
-      device.late.fill_with_zeros();
-      throw UnusableInput(endless(source_.text.name, line));
-    }
-    done += count;
-  }
+/// Values of some rows (see field.glsl); rows × points of them.
+void GlslField::run(const PointBatch& points, std::span<const std::span<float>> values) const {
+  std::uint32_t line = 0;
+  context_->run([&] { line = device_->run(points, static_cast<unsigned>(values.size()), values); });
+  if (line != 0) throw UnusableInput(endless(source_.text.name, line));
 }
 
 void GlslField::drop_infinite(std::span<float> values) const {
@@ -132,7 +86,7 @@ void GlslField::drop_infinite(std::span<float> values) const {
 
 void GlslField::evaluate(const PointBatch& points, std::span<float> values) const {
   if (values.empty()) return;
-  context_->run([&] { run(points, 1, {&values, 1}); });
+  run(points, {&values, 1});
   drop_infinite(values);
 }
 
@@ -147,7 +101,7 @@ void GlslField::evaluate_gradient(const PointBatch& points, std::span<float> val
     rows[1 + 2 * axis] = at[axis];
     rows[2 + 2 * axis] = std::span<float>(below).subspan(axis * count, count);
   }
-  context_->run([&] { run(points, rows_of_gradient, rows); });
+  run(points, rows);
   for (const std::span<float> row : rows) drop_infinite(row);
   const float scale = static_cast<float>(scale_);
   const std::array<std::span<const float>, 3> p{points.x, points.y, points.z};

@@ -12,6 +12,8 @@
 
 namespace evenmesh::gl {
 
+class PointProgram;
+
 struct FieldTraits {
   double scale = 1;                   ///< typical size of the solid, model units
   double level = 0;                   ///< what is subtracted from the function
@@ -22,8 +24,7 @@ struct FieldTraits {
 /// of 2^-10 to 2^-11 of the point's largest coordinate, or of `scale` if that is larger. Where f is smooth, of size
 /// about `scale`, gradients are good to some 1e-4.
 ///
-/// Values that are not finite are NaN, so outside, except +infinity; they are counted. Dispatches begin small and grow
-/// to about a quarter of a second each.
+/// Values that are not finite are NaN, so outside, except +infinity; they are counted.
 /// All evaluations throw UnusableInput if a loop does not end, or the driver does not come back.
 class GlslField final : public Field {
  public:
@@ -50,14 +51,13 @@ class GlslField final : public Field {
   std::size_t non_finite() const override { return non_finite_; }
 
  private:
-  struct Device;
-  void run(const PointBatch& points, std::size_t rows, std::span<const std::span<float>> values) const;
+  void run(const PointBatch& points, std::span<const std::span<float>> values) const;
   void drop_infinite(std::span<float> values) const;
 
   GlslSource source_;
   std::shared_ptr<Context> context_;
-  std::unique_ptr<Device> device_;  ///< touched in jobs only
-  double scale_;                    ///< a power of two
+  std::unique_ptr<PointProgram> device_;  ///< touched in jobs only
+  double scale_;                          ///< a power of two
   std::optional<double> lipschitz_;
   mutable std::atomic<std::size_t> non_finite_{0};
 };

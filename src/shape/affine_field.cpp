@@ -53,6 +53,11 @@ class AffineField final : public Field {
   }
   bool has_gradient() const override { return field_->has_gradient(); }
 
+  const std::shared_ptr<const Field>& inner() const { return field_; }
+  std::shared_ptr<const Field> around(std::shared_ptr<const Field> field) const {
+    return std::make_shared<AffineField>(std::move(field), back_);
+  }
+
  private:
   struct Moved {
     std::vector<float> x, y, z;
@@ -130,6 +135,11 @@ class BoxedField final : public Field {
   double epsilon() const override { return field_->epsilon(); }
   bool has_gradient() const override { return field_->has_gradient(); }
 
+  const std::shared_ptr<const Field>& inner() const { return field_; }
+  std::shared_ptr<const Field> around(std::shared_ptr<const Field> field) const {
+    return std::make_shared<BoxedField>(std::move(field), box_);
+  }
+
  private:
   Interval within_walls(const Interval& range, const Box& box) const {
     double lo = -std::numeric_limits<double>::infinity(), hi = lo;
@@ -155,6 +165,16 @@ std::shared_ptr<const Field> boxed_field(std::shared_ptr<const Field> field, con
 
 std::shared_ptr<const Field> transformed_field(std::shared_ptr<const Field> field, const Affine& transform) {
   return std::make_shared<AffineField>(std::move(field), transform.inverse());
+}
+
+std::shared_ptr<const Field> with_innermost(const std::shared_ptr<const Field>& field, const Replacement& replace) {
+  const auto within = [&](const auto& shell) -> std::shared_ptr<const Field> {
+    std::shared_ptr<const Field> inner = with_innermost(shell.inner(), replace);
+    return inner == shell.inner() ? field : shell.around(std::move(inner));
+  };
+  if (const auto* moved = dynamic_cast<const AffineField*>(field.get())) return within(*moved);
+  if (const auto* boxed = dynamic_cast<const BoxedField*>(field.get())) return within(*boxed);
+  return replace(field);
 }
 
 Box transformed_box(const Box& box, const Affine& transform) {

@@ -103,6 +103,8 @@ class ProgramField final : public Field {
 
   std::shared_ptr<const Field> specialized(const Box& box) const override;
 
+  const Program& program() const { return program_; }
+
  private:
   const std::vector<Enclosure>& enclose_all(const Box& box) const;
   double value(const Vec3& point) const;
@@ -199,6 +201,11 @@ std::shared_ptr<const Field> ProgramField::specialized(const Box& box) const {
 
 std::shared_ptr<const Field> make_program_field(Program program) {
   return std::make_shared<ProgramField>(std::move(program));
+}
+
+const Program* program_of(const Field& field) {
+  const auto* found = dynamic_cast<const ProgramField*>(&field);
+  return found ? &found->program() : nullptr;
 }
 
 }  // namespace evenmesh

@@ -12,4 +12,7 @@ namespace evenmesh {
 /// Cost: about 0.05 ns per point and arithmetic operation where vectors are 256 bits wide.
 std::shared_ptr<const Field> make_program_field(Program program);
 
+/// The program of such a field; nullptr where the field is another one.
+const Program* program_of(const Field& field);
+
 }  // namespace evenmesh

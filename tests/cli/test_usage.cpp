@@ -168,7 +168,6 @@ TEST_F(Usage, WhatIsNotBuiltYetIsStatus2AndNeverIgnored) {
   }
   const std::vector<Words> options{
       {"--density", "curvature"},
-      {"--backend", "gl"},
       {"--error", "0.001"},
   };
   for (const Words& option : options) {

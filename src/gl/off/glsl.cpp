@@ -17,6 +17,14 @@ Shape shape_from_glsl(std::string, const GlslOptions&, std::string) {
   refuse();
 }
 
+Shape on_gl(const Shape&, const std::string&) {
+  refuse();
+}
+
+bool runs_on_gl(const Shape&) {
+  return false;
+}
+
 std::string gl_renderer(const std::string&) {
   refuse();
 }
