@@ -123,6 +123,7 @@ void add_raster_options(CLI::App& app, MeshingArguments& a) {
                  "their triangles, or without one")
       ->type_name("VERT FRAG")
       ->expected(2)
+      ->allow_extra_args(false)
       ->group(group);
   app.add_option("--raster-vertices", a.raster_vertices,
                  "--raster without INPUT: how many vertices are drawn, three for each triangle;\nneeds --bounds")
