@@ -1,6 +1,6 @@
 // Sampling of a shader: seconds, how many evaluations it takes, and what they cost by themselves.
 //
-//   bench_glsl FILE [RESOLUTION [LIPSCHITZ [DEVICE]]]      512, none, the best device; bounds ±1.25
+//   bench_glsl FILE [RESOLUTION [LIPSCHITZ [DEVICE [NAME=VALUE …]]]]      512, none, the best device; bounds ±1.25
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -73,13 +73,17 @@ double raw_cost(const Field& field, std::size_t count) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc < 2) return std::printf("bench_glsl FILE [RESOLUTION [LIPSCHITZ [DEVICE]]]\n"), 2;
+  if (argc < 2) return std::printf("bench_glsl FILE [RESOLUTION [LIPSCHITZ [DEVICE [NAME=VALUE …]]]]\n"), 2;
   std::ifstream file(argv[1]);
   const std::string text((std::istreambuf_iterator<char>(file)), {});
   GlslOptions options;
   const std::size_t resolution = argc > 2 ? static_cast<std::size_t>(std::atoi(argv[2])) : 512;
   if (argc > 3 && std::atof(argv[3]) > 0) options.lipschitz = std::atof(argv[3]);
   if (argc > 4) options.device = argv[4];
+  for (int i = 5; i < argc; ++i) {
+    const std::string definition = argv[i];
+    options.definitions[definition.substr(0, definition.find('='))] = definition.substr(definition.find('=') + 1);
+  }
   options.bounds = {{-1.25, -1.25, -1.25}, {1.25, 1.25, 1.25}};
   Shape shape = shape_from_glsl(text, options, argv[1]);
   const auto field = std::get<std::shared_ptr<const Field>>(shape.what);

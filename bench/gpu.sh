@@ -30,10 +30,12 @@ program=$out/build/evenmesh
   timeout "$(left)" "$out/build/test_gl" --gtest_brief=1 2>&1 | tail -5
 
   say "sampling at resolution 512, all of the grid, and with a Lipschitz bound of 1"
-  for shader in mandelbulb gyroid blobs; do
+  for shader in "mandelbulb rounds=7 skin=0" gyroid blobs; do
     for bound in 0 1; do
       [ "$(left)" -lt 30 ] && { echo "left out: $shader $bound, no time"; continue; }
-      timeout "$(left)" "$out/build/bench_glsl" "examples/glsl/$shader.glsl" 512 $bound "$device" | tail -2
+      read -r name definitions <<<"$shader"
+      # shellcheck disable=SC2086
+      timeout "$(left)" "$out/build/bench_glsl" "examples/glsl/$name.glsl" 512 $bound "$device" $definitions | tail -2
     done
   done
 

@@ -30,6 +30,7 @@ void add_what(CLI::App& app, MeshingArguments& a) {
                  "filled or cut off; default: not")
       ->type_name("global R")
       ->expected(2)
+      ->allow_extra_args(false)
       ->group(group);
   option("--features", a.features, "ANGLE",
          "sharp edges: where the surface turns by more than ANGLE degrees, 0 to 180,\nthe mesh has an edge: auto = 40, "

@@ -1,6 +1,6 @@
 // Struts and balls, repeated through space and cut to a cube with round edges: a printable lattice.
-uniform float cell = 1.0;
-uniform float strut = 0.18;
+uniform float cell = 0.64;
+uniform float strut = 0.15;
 
 float smin(float a, float b, float k) {
   float h = max(k - abs(a - b), 0.0);
@@ -19,4 +19,4 @@ float roundCube(vec3 p, float side, float r) {
   return length(max(d, 0.0)) + min(max(d.x, max(d.y, d.z)), 0.0) - r;
 }
 
-float map(vec3 p) { return max(frame(repeat(p)), roundCube(p, 0.9, 0.15)); }
+float map(vec3 p) { return -smin(-frame(repeat(p)), -roundCube(p, 0.9, 0.15), 0.08); }

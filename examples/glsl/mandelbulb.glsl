@@ -2,6 +2,7 @@
 // `rounds` says how much of it is seen: more of them, more detail.
 uniform float power = 8.0;
 uniform int rounds = 2;
+uniform float skin = 0.02;
 
 float map(vec3 p) {
   vec3 z = p;
@@ -13,5 +14,5 @@ float map(vec3 p) {
     r = length(z);
   }
   // A distance outside; what did not escape is inside, and as far from it as the last step went.
-  return 0.5 * log(max(r, 1e-4) / 1.3) * r / dr;
+  return 0.5 * log(max(r, 1e-4) / 1.3) * r / dr - skin;
 }

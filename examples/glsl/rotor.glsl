@@ -13,7 +13,10 @@ float sectors(inout vec2 p, float n) {
 
 float mirror(inout float x) { float side = sign(x); x = abs(x); return side; }
 
-float tube(vec3 p, float r, float h) { return max(length(p.xz) - r, abs(p.y) - h); }
+float tube(vec3 p, float r, float h) {
+  vec2 d = vec2(length(p.xz) - r, abs(p.y) - h) + 0.06;  // rounded
+  return length(max(d, 0.0)) + min(max(d.x, d.y), 0.0) - 0.06;
+}
 
 float box(vec3 p, vec3 b) { vec3 d = abs(p) - b; return length(max(d, 0.0)) + min(max(d.x, max(d.y, d.z)), 0.0); }
 
@@ -22,7 +25,10 @@ float unionRound(float a, float b, float r) {
   vec2 u = max(vec2(r - a, r - b), vec2(0.0));
   return max(r, min(a, b)) - length(u);
 }
-float groove(float a, float b, float depth, float width) { return max(a, min(a + depth, width - abs(b))); }
+float groove(float a, float b, float depth, float width) {
+  float bottom = a + depth, wall = width - abs(b);
+  return unionRound(-a, -unionRound(bottom, wall, 0.03), 0.03) * -1.0;
+}
 
 float map(vec3 p) {
   float hub = tube(p, 0.42, 0.3);
