@@ -114,7 +114,8 @@ void add_input_options(CLI::App& app, MeshingArguments& a, const std::string& wh
       "skipped; default: not known");
   option("--level", a.level, "V", "shader: the surface is where the function has this value; default 0");
   option("--gl-device", a.gl_device, "NAME",
-         "renderer that runs shaders, and expressions with --backend gl: 0, 1, …, software, or part of a name;\ndefault: the best there is");
+         "renderer that runs shaders, and expressions with --backend gl: 0, 1, …, software, or part of a "
+         "name;\ndefault: the best there is");
 }
 
 void add_raster_options(CLI::App& app, MeshingArguments& a) {

@@ -33,6 +33,30 @@ TEST_F(Shaders, BecomeMeshes) {
   EXPECT_EQ(read("d.ply"), read("a.ply"));
 }
 
+TEST_F(Shaders, ExpressionsHaveTheSameSurfaceOnOpenGl) {
+  for (const Words& what : {Words{"gallery:tangle"}, Words{"-e", "sqrt((sqrt(x^2+y^2)-1)^2+z^2) - a", "-D", "a=0.4"}}) {
+    std::vector<Json> figures;
+    for (const char* backend : {"cpu", "gl"}) {
+      Words words{"mesh", "-n", "1500", "-o", "a.ply", "-q", "--backend", backend};
+      words.insert(words.end(), what.begin(), what.end());
+      ASSERT_EQ(run(words).status, 0);
+      figures.push_back(Json::parse(info("a.ply")));
+      EXPECT_TRUE(figures.back().at("closed").get<bool>());
+      EXPECT_TRUE(figures.back().at("two_manifold").get<bool>());
+    }
+    EXPECT_EQ(figures[0].at("euler"), figures[1].at("euler"));
+    EXPECT_NEAR(figures[0].at("volume").get<double>(), figures[1].at("volume").get<double>(),
+                1e-2 * figures[0].at("volume").get<double>());
+  }
+}
+
+TEST_F(Shaders, NothingToMoveIsSaid) {
+  write("a.obj", tetrahedron_obj);
+  const Outcome outcome = run({"mesh", "a.obj", "-n", "100", "-o", "a.ply", "--backend", "gl"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("no expression and no shader"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Shaders, StandWhereverAShapeCan) {
   write("ball.glsl", sphere);
   write("two.json", R"({"union": [{"glsl": "ball.glsl"},

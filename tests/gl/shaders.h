@@ -14,20 +14,15 @@
 #include "evenmesh/glsl.h"
 #include "gl/glsl_field.h"
 #include "gl/glsl_source.h"
+#include "shape/fields.h"
 
 namespace evenmesh::testing {
 
 using Values = std::map<std::string, std::string>;
 
-struct Points {
-  std::vector<float> x, y, z;
-  PointBatch batch() const { return {x, y, z}; }
-  std::size_t size() const { return x.size(); }
-};
-
 /// Points in [-reach, reach]³, the same on every machine.
 inline Points scattered(std::size_t count, float reach = 1.5f) {
-  Points points;
+  Points points(0);
   std::uint32_t state = 12345;
   const auto next = [&] {
     state = state * 1664525u + 1013904223u;
