@@ -28,7 +28,8 @@ struct MeshDefects {
 Mesh cleaned(const Mesh& mesh, MeshDefects& defects);
 
 /// How much of an inside a mesh has: of the points that rays of any of three directions call inside, the share on which
-/// all three agree. 1 for closed meshes, 0.9 with some holes, below a half for open sheets; 0 if no ray finds an inside.
+/// all three agree. 1 for closed meshes, 0.9 with some holes, below a half for open sheets; 0 if no ray finds an
+/// inside.
 ///
 /// Asked at 64 points along the longest side. Cost: some milliseconds and about 0.2 µs per triangle.
 double solidity(const Mesh& mesh, Run& run = Run::silent());

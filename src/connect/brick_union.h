@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "sample/brick_cubes.h"
 #include "connect/union_find.h"
 #include "core/parallel.h"
+#include "sample/brick_cubes.h"
 
 namespace evenmesh {
 

@@ -283,7 +283,8 @@ class Job {
   /// Onto the shape itself, or onto the samples where that would take calls of a field for single points.
   std::unique_ptr<Projector> projector() const {
     const Field* field = shape_.field();
-    const bool by_samples = shape_.compound() || shape_.sampler() || (field && wants_batches(*field) && field->has_gradient());
+    const bool by_samples =
+        shape_.compound() || shape_.sampler() || (field && wants_batches(*field) && field->has_gradient());
     return by_samples ? make_projector(samples_) : make_projector(shape_, shape_.bounds, run_);
   }
 

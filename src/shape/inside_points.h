@@ -11,8 +11,8 @@
 namespace evenmesh {
 
 struct InsidePoints {
-  Box box;  ///< of the points at which f < 0
-  std::size_t asked = 0, inside = 0, numbers = 0;  ///< points; of these with f < 0, and with any number
+  Box box;                                               ///< of the points at which f < 0
+  std::size_t asked = 0, inside = 0, numbers = 0;        ///< points; of these with f < 0, and with any number
   float least = std::numeric_limits<float>::infinity();  ///< f
 };
 
