@@ -3,15 +3,16 @@
 //
 //   evenmesh mesh --raster quadric.vert quadric.frag --raster-vertices 72 --bounds=-1,-1,-1,1,1,1 -o ellipsoid.ply
 //   evenmesh mesh --raster quadric.vert quadric.frag --raster-vertices 72 --bounds=-1,-1,-1,1,1,1 -D form=6,6,-4 -o hyperboloid.ply
-in vec3 start;
 flat in vec3 low, high;
 out vec3 surface_normal;
-uniform mat4 viewProjection;
+uniform mat4 viewProjection, inverseViewProjection;
 uniform vec3 viewDirection;
+uniform vec2 viewportSize;
 uniform vec3 form = vec3(1.2, 2.0, 4.0);  // the solid form.x x² + form.y y² + form.z z² < 1 within the boxes
 
 void main() {
-  vec3 o = start, d = viewDirection;
+  // The ray through the pixel, the same for front and back faces.
+  vec3 d = viewDirection, o = (inverseViewProjection * vec4(2.0 * gl_FragCoord.xy / viewportSize - 1.0, 0.0, 1.0)).xyz;
   // Within the box: from this t to that.
   vec3 a = (low - o) / d, b = (high - o) / d, first = min(a, b), last = max(a, b);
   if (d.x == 0.0) first.x = -1e9, last.x = 1e9;
@@ -25,7 +26,7 @@ void main() {
     near = max(near, (-B - sqrt(h)) / A), far = min(far, (-B + sqrt(h)) / A);
   } else if (h > 0.0) {  // all but what is between the roots
     float r1 = (-B + sqrt(h)) / A, r2 = (-B - sqrt(h)) / A;
-    if (near < r1) far = min(far, r1); else near = max(near, r2);
+    if (near + far < r1 + r2) far = min(far, r1); else near = max(near, r2);
   }
   if (near >= far) discard;
   vec3 p = o + (gl_FrontFacing ? near : far) * d;

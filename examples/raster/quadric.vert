@@ -1,7 +1,6 @@
 // Two boxes, one on the other, in which quadric.frag finds its surface.
 uniform mat4 viewProjection;
 uniform vec3 boundsLow, boundsHigh;
-out vec3 start;           // a point on the ray
 flat out vec3 low, high;  // of the box
 
 void main() {
@@ -10,6 +9,5 @@ void main() {
   vec3 middle = 0.5 * (boundsLow + boundsHigh), reach = 0.49 * (boundsHigh - boundsLow);
   low = middle - reach, high = middle + reach;
   if (gl_VertexID < 36) high.z = middle.z; else low.z = middle.z;
-  start = mix(low, high, vec3(c & 1, c >> 1 & 1, c >> 2 & 1));
-  gl_Position = viewProjection * vec4(start, 1.0);
+  gl_Position = viewProjection * vec4(mix(low, high, vec3(c & 1, c >> 1 & 1, c >> 2 & 1)), 1.0);
 }

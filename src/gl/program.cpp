@@ -126,6 +126,10 @@ void Program::set(const char* uniform, std::uint32_t value) const {
   glProgramUniform1ui(id_, location(uniform), value);
 }
 
+void Program::set(const char* uniform, const std::array<float, 2>& value) const {
+  glProgramUniform2fv(id_, location(uniform), 1, value.data());
+}
+
 void Program::set(const char* uniform, const std::array<float, 3>& value) const {
   glProgramUniform3fv(id_, location(uniform), 1, value.data());
 }

@@ -62,6 +62,7 @@ class Program {
   void set(const char* uniform, float value) const;
   void set(const char* uniform, std::int32_t value) const;
   void set(const char* uniform, std::uint32_t value) const;
+  void set(const char* uniform, const std::array<float, 2>& value) const;
   void set(const char* uniform, const std::array<float, 3>& value) const;
   void set(const char* uniform, const std::array<float, 4>& value) const;
   /// Location of a vertex attribute; -1: the shaders do not use it.

@@ -126,6 +126,7 @@ void RasterDevice::set_view(const RasterView& view) const {
   p.set_matrix("inverseViewProjection", view.inverse);
   p.set("viewDirection", view.direction), p.set("boundsLow", view.low), p.set("boundsHigh", view.high);
   p.set("pixelSize", view.pixel_size);
+  p.set("viewportSize", std::array<float, 2>{static_cast<float>(view.width), static_cast<float>(view.height)});
   p.set("em_back_x", view.back[0]), p.set("em_back_y", view.back[1]), p.set("em_back_z", view.back[2]);
   p.set("em_axis", view.axis), p.set("em_cells", view.cells);
   p.set("em_width", static_cast<std::uint32_t>(view.width));

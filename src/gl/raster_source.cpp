@@ -33,7 +33,8 @@ constexpr std::string_view default_fragment = "void main() {}\n";
 const StageUniforms& view_uniforms() {
   static const StageUniforms uniforms{{"viewProjection", "mat4"}, {"inverseViewProjection", "mat4"},
                                       {"viewDirection", "vec3"},  {"boundsLow", "vec3"},
-                                      {"boundsHigh", "vec3"},     {"pixelSize", "float"}};
+                                      {"boundsHigh", "vec3"},     {"pixelSize", "float"},
+                                      {"viewportSize", "vec2"}};
   return uniforms;
 }
 

@@ -132,6 +132,15 @@ TEST(Raster, AgreesWithTheScanOfATurnedCube) {
   EXPECT_LT(a.other_counts, a.rays / 1000);
 }
 
+TEST(Raster, AgreesAcrossTheBordersOfViews) {
+  // Edges that run almost along the columns of pixels, cut where views meet.
+  Mesh mesh = make_box_around({{-1, -0.8, -0.6}, {1, 0.8, 0.6}});
+  const Affine turn = Affine::rotate({0, 0, 1}, 1e-5).after(Affine::rotate({1, 0, 0}, 11));
+  for (Vec3& v : mesh.vertices) v = turn(v);
+  const Agreement a = compare(mesh, 700);
+  EXPECT_LT(a.other_counts, a.rays / 1000);
+}
+
 TEST(Raster, AgreesWithTheScanOfAModel) {
   const std::filesystem::path path = std::filesystem::path(EVENMESH_SOURCE_DIR) / ".." / "shared/data/armadillo.obj";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;

@@ -4,7 +4,7 @@
 layout(std430, binding = 0) restrict buffer EmState { uint em_count, em_late_vertex, em_late_fragment; };
 layout(std430, binding = 1) writeonly restrict buffer EmFragments { uint em_fragments[]; };
 
-noperspective in float em_along;
+in vec2 em_clip;
 flat in uint em_vertex_late;
 
 uniform uint em_capacity;  // fragments that the list has room for
@@ -34,7 +34,7 @@ vec3 em_sloped(vec2 slope) {
 }
 
 void main() {
-  float along = em_along;
+  float along = em_clip.x / em_clip.y;  // -1 to 1 from the grid's first to its last point
   vec2 slope = vec2(dFdx(along), dFdy(along));
   bool enters = gl_FrontFacing;
   em_FragDepth = gl_FragCoord.z;
