@@ -19,6 +19,7 @@ void main() {
   if (d.y == 0.0) first.y = -1e9, last.y = 1e9;
   if (d.z == 0.0) first.z = -1e9, last.z = 1e9;
   float near = max(first.x, max(first.y, first.z)), far = min(last.x, min(last.y, last.z));
+  float box = gl_FrontFacing ? near : far;
   // Within the quadric: A t² + 2 B t + C < 0.
   float A = dot(form * d, d), B = dot(form * o, d), C = dot(form * o, o) - 1.0, h = B * B - A * C;
   if (A > 0.0) {
@@ -29,8 +30,8 @@ void main() {
     if (near + far < r1 + r2) far = min(far, r1); else near = max(near, r2);
   }
   if (near >= far) discard;
-  vec3 p = o + (gl_FrontFacing ? near : far) * d;
-  bool on_quadric = abs(dot(form * p, p) - 1.0) < 1e-4;
-  surface_normal = on_quadric ? form * p : gl_FrontFacing ? -d : d;
+  float t = gl_FrontFacing ? near : far;
+  vec3 p = o + t * d;
+  surface_normal = t != box ? form * p : gl_FrontFacing ? -d : d;
   gl_FragDepth = (viewProjection * vec4(p, 1.0)).z * 0.5 + 0.5;
 }
