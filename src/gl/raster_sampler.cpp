@@ -14,9 +14,9 @@
 namespace evenmesh::gl {
 namespace {
 
-/// Vertices are rounded to 1/256 of a pixel, and depths a little: where directions differ so near to the surface, the
-/// input is not to blame.
-constexpr double rounding = 1.0 / 32;
+/// Cells. Vertices are rounded to 1/256 of a pixel, and depths by more where rays graze the surface: where directions
+/// differ so near to it, the input is not to blame.
+constexpr double rounding = 1.0 / 8;
 
 constexpr auto view_size = static_cast<std::uint32_t>(largest_view);
 static_assert(view_size % brick_size == 0);
