@@ -84,6 +84,11 @@ inline Box common(const Box& a, const Box& b) {
   for (int i = 0; i < 3; ++i) box.lo[i] = std::max(a.lo[i], b.lo[i]), box.hi[i] = std::min(a.hi[i], b.hi[i]);
   return box;
 }
+/// The least box around both, of which either may be empty.
+inline Box united(Box a, const Box& b) {
+  if (!b.empty()) a.add(b.lo), a.add(b.hi);
+  return a;
+}
 
 /// Three vertex indices, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;

@@ -151,6 +151,8 @@ std::vector<GlslToken> tokenize_glsl(const GlslText& text) {
   if (text.text.size() > longest_text)
     throw UnusableInput(fmt::format("{}: a shader of {} bytes; at most {} are read, so take out what is not needed",
                                     text.name, text.text.size(), longest_text));
+  if (std::all_of(text.text.begin(), text.text.end(), is_space))
+    throw UnusableInput(text.name + ": is empty; save the shader again");
   const auto no_text = [](char c) { return (static_cast<unsigned char>(c) < 32 && !is_space(c)) || c == 127; };
   if (std::any_of(text.text.begin(), text.text.end(), no_text))
     throw UnusableInput(text.name + ": is not text, so it is no shader");

@@ -154,11 +154,6 @@ Box find_bounds(const Field& field) {
 
 namespace {
 
-Box united(Box box, const Box& other) {
-  box.add(other.lo), box.add(other.hi);
-  return box;
-}
-
 /// What all bounded operands have in common.
 Box common_bounds(const std::vector<Shape>& operands) {
   constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -25,10 +25,6 @@ constexpr int most_shrinks = 40, most_growths = 24;
 Box grown(const Box& box, const Vec3& by) {
   return {box.lo - by, box.hi + by};
 }
-Box united(Box box, const Box& other) {
-  if (!other.empty()) box.add(other.lo), box.add(other.hi);
-  return box;
-}
 std::array<int, 3> cells(int n) {
   return {n, n, n};
 }

@@ -81,7 +81,7 @@ TEST_F(Shaders, ThatCannotBeMeshedAreNamedWithAReason) {
   write("positive.glsl", "float map(vec3 p) { return abs(length(p) - 1.0) + 0.01; }\n");
   write("floor.glsl", "float map(vec3 p) { return p.y; }\n");
   write("ball.glsl", sphere);
-  write("mesh.glsl", tetrahedron_obj);
+  write("empty.glsl", "\n");
   struct Case {
     Words words;
     int status;
@@ -89,6 +89,7 @@ TEST_F(Shaders, ThatCannotBeMeshedAreNamedWithAReason) {
   };
   const std::vector<Case> cases{
       {{"syntax.glsl"}, 3, "syntax.glsl:2:"},
+      {{"empty.glsl"}, 3, "empty.glsl: is empty"},
       {{"entry.glsl"}, 2, "--entry scene"},
       {{"endless.glsl"}, 3, "does not end"},
       {{"nan.glsl"}, 3, "not a finite number"},
