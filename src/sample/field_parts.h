@@ -12,6 +12,9 @@
 
 namespace evenmesh {
 
+/// Grid points per side of a node, for which a field may be specialized.
+constexpr unsigned node_side = 64;
+
 /// A cube of grid points: those from the corner on, and the side's next.
 struct GridCube {
   std::array<std::uint32_t, 3> corner{};
@@ -54,29 +57,38 @@ struct FieldPart {
 class TileScanner {
  public:
   /// Appends the brackets of the cubes, which are in Morton order, in that order of their bricks, and the blocks to
-  /// `part`. Evaluates as many cubes by one call as go into the field's batch, and at least one; of each only the
-  /// points within the bounds and next to them.
+  /// `part`. Of each cube only the points within the bounds and next to them are evaluated, as many by one call as go
+  /// into the field's batch. A field that wants batches is asked once for points that neighbours share.
   void scan(const Field& field, const FieldGrid& grid, std::span<const GridCube> cubes, std::vector<Bracket>& brackets,
             FieldPart& part);
 
  private:
-  /// The evaluated points of a cube: a box of them, z fastest.
+  /// A box of grid points, z fastest, that holds those of some cubes.
   struct Tile {
-    GridCube cube;
+    std::span<const GridCube> cubes;
     std::array<std::uint32_t, 3> start{}, points{};
-    std::size_t at = 0;  ///< of the first point in the arrays
+    std::size_t at = 0;  ///< of the first point in f_ and inside_
     std::size_t count() const { return std::size_t{points[0]} * points[1] * points[2]; }
+    std::size_t index(const std::array<std::uint32_t, 3>& p) const {
+      return at + (std::size_t{p[0] - start[0]} * points[1] + (p[1] - start[1])) * points[2] + (p[2] - start[2]);
+    }
   };
-  static Tile tile_of(const GridCube& cube, const FieldGrid& grid);
-  std::size_t collect(const FieldGrid& grid, std::span<const GridCube> cubes, std::size_t batch);
+  static Tile tile_of(std::span<const GridCube> cubes, const FieldGrid& grid);
+  std::size_t evaluate_all(const Field& field, const FieldGrid& grid, std::span<const GridCube> cubes);
+  std::size_t evaluate_shared(const Field& field, const FieldGrid& grid, std::span<const GridCube> cubes);
+  void reserve(std::size_t points, std::size_t asked);
   void place(const Tile& tile, const FieldGrid& grid);
+  void place_shared(const Tile& tile, const FieldGrid& grid);
   bool has_border(const Tile& tile, const FieldGrid& grid);
-  void scan_brick(const Tile& tile, const FieldGrid& grid, const std::array<std::uint32_t, 3>& start,
+  void scan_cube(const Tile& tile, const GridCube& cube, const FieldGrid& grid, std::vector<Bracket>& brackets,
+                 FieldPart& part);
+  void scan_brick(const Tile& tile, const FieldGrid& grid, const std::array<std::uint32_t, 3>& corner,
                   std::vector<Bracket>& brackets, FieldPart& part);
 
   std::vector<Tile> tiles_;
-  std::vector<float> x_, y_, z_, f_;
+  std::vector<float> x_, y_, z_, f_, values_;
   std::vector<std::uint8_t> inside_;
+  std::vector<std::size_t> asked_;  ///< where in f_ the values go
 };
 
 /// Finds where f = 0 on each bracket, to 1e-4 cells, with its normal, and fills in the arrays of `part`.

@@ -8,9 +8,9 @@ namespace {
 
 constexpr std::size_t kBatch = 1024;  // least points per evaluation: enough to hide its overhead, few for the cache
 constexpr float kTolerance = 1e-4f;   // cells
-constexpr float kRough = 1e-3f;  // cells; where values are dear, and f so rough that the chord does not find the root
-constexpr float kAgreement = 1e-3f;  // cells; between Newton's and the secant's guess
-constexpr float kBeyond = 1e-3f;     // cells beyond a face of the bounds where f is asked whether it goes on
+constexpr float kRough = 4e-3f;       // cells; where values are dear, and f so rough that no chord finds the root
+constexpr float kAgreement = 1e-3f;   // cells; between Newton's and the secant's guess
+constexpr float kBeyond = 1e-3f;      // cells beyond a face of the bounds where f is asked whether it goes on
 constexpr int kMostSteps = 40;
 constexpr int kBisections = 12;
 
@@ -199,7 +199,10 @@ void RootFinder::refine(std::span<Bracket> brackets) {
       narrow(b, root.t, f_[s]);
       // Halving the value at the end that stays draws the next chord towards it.
       (low ? b.f_hi : b.f_lo) *= 0.5f;
-      if (b.t_hi - b.t_lo > tolerance) active_[left++] = active_[s];
+      if (b.t_hi - b.t_lo > tolerance)
+        active_[left++] = active_[s];
+      else
+        root.t = chord_root(b);
     }
     active_.resize(left);
   }

@@ -9,7 +9,6 @@
 namespace evenmesh {
 namespace {
 
-constexpr unsigned kNode = 64;          // grid points per side of a node, for which a field may be specialized
 constexpr std::size_t kMostNodes = 64;  // of a task: the roots of all are sought together
 
 using Cubes = std::vector<GridCube>;
@@ -104,12 +103,12 @@ class Descent {
 
 // The nodes that may hold surface, in Morton order.
 Cubes collect_nodes(const Field& field, const FieldGrid& grid) {
-  unsigned side = kNode;
+  unsigned side = node_side;
   while (side < *std::max_element(grid.grid.size.begin(), grid.grid.size.end())) side *= 2;
   Cubes cubes{{{0, 0, 0}, side}};
   Descent descent(field, grid);
   descent.sift(cubes, side);
-  for (; side > kNode; side /= 2) {
+  for (; side > node_side; side /= 2) {
     descent.split(cubes, side, 0);
     descent.sift(cubes, side / 2);
   }
@@ -207,9 +206,9 @@ struct Worker {
     const Field& field = local ? *local : whole;
     cubes.assign(nodes.begin(), nodes.end());
     Descent descent(field, grid);
-    for (unsigned side = kNode; side > brick_size; side /= 2) {
+    for (unsigned side = node_side; side > brick_size; side /= 2) {
       // Larger cubes share fewer points with their neighbours, smaller ones stay in the cache.
-      descent.split(cubes, side, batches ? kNode : kNode / 2);
+      descent.split(cubes, side, batches ? node_side : node_side / 2);
       descent.sift(cubes, side / 2);
     }
     if (stride > 1) Sketch(field, grid, stride).look(cubes);

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "sample/field_parts.h"
 #include "sample/morton.h"
@@ -29,6 +30,11 @@ Marks mark_inside(const float* __restrict f, std::uint8_t* __restrict inside, st
     all = static_cast<std::uint8_t>(all & inside[i]);
   }
   return {any != 0, all != 0};
+}
+
+// The node that a cube lies in.
+std::array<std::uint32_t, 3> node_of(const GridCube& cube) {
+  return {cube.corner[0] / node_side, cube.corner[1] / node_side, cube.corner[2] / node_side};
 }
 
 }  // namespace
@@ -63,34 +69,91 @@ bool FieldGrid::within(const GridCube& cube) const {
 }
 
 // Points beyond the bounds are outside, so of them only those are needed at which an edge ends.
-TileScanner::Tile TileScanner::tile_of(const GridCube& cube, const FieldGrid& grid) {
+TileScanner::Tile TileScanner::tile_of(std::span<const GridCube> cubes, const FieldGrid& grid) {
   Tile tile;
-  tile.cube = cube;
+  tile.cubes = cubes;
   for (unsigned a = 0; a < 3; ++a) {
-    const auto corner = static_cast<std::int32_t>(cube.corner[a]);
-    const std::int32_t skipped = std::max(grid.first[a] - 1 - corner, 0) / 8 * 8;
-    const std::int32_t top = std::min(corner + static_cast<std::int32_t>(cube.side), grid.last[a] + 1);
-    tile.start[a] = static_cast<std::uint32_t>(corner + skipped);
-    tile.points[a] = static_cast<std::uint32_t>(std::max(top - corner - skipped + 1, 1));
+    std::int32_t start = std::numeric_limits<std::int32_t>::max(), end = 0;
+    for (const GridCube& cube : cubes) {
+      const auto corner = static_cast<std::int32_t>(cube.corner[a]);
+      const std::int32_t first = corner + std::max(grid.first[a] - 1 - corner, 0) / 8 * 8;
+      const std::int32_t last = std::min(corner + static_cast<std::int32_t>(cube.side), grid.last[a] + 1);
+      start = std::min(start, first), end = std::max(end, std::max(last, first) + 1);
+    }
+    tile.start[a] = static_cast<std::uint32_t>(start), tile.points[a] = static_cast<std::uint32_t>(end - start);
   }
   return tile;
 }
 
-// Lays out as many cubes as one evaluation takes; returns the number of their points.
-std::size_t TileScanner::collect(const FieldGrid& grid, std::span<const GridCube> cubes, std::size_t batch) {
+// Asks for all points of as many cubes as go into a batch, at least one. Returns how many cubes are done; tiles_ are
+// those that may hold a border.
+std::size_t TileScanner::evaluate_all(const Field& field, const FieldGrid& grid, std::span<const GridCube> cubes) {
   tiles_.clear();
-  std::size_t count = 0;
-  for (const GridCube& cube : cubes) {
-    Tile tile = tile_of(cube, grid);
-    if (!tiles_.empty() && count + tile.count() > batch) break;
-    tile.at = count, count += tile.count();
+  std::size_t done = 0, n = 0;
+  for (; done < cubes.size(); ++done) {
+    Tile tile = tile_of(cubes.subspan(done, 1), grid);
+    if (done > 0 && n + tile.count() > field.batch_size()) break;
+    tile.at = n, n += tile.count();
     tiles_.push_back(tile);
   }
-  if (x_.size() < count) {
-    for (std::vector<float>* v : {&x_, &y_, &z_, &f_}) v->resize(count);
-    inside_.resize(count + 8);
+  reserve(n, n);
+  for (const Tile& tile : tiles_) place(tile, grid);
+  field.evaluate({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)}, std::span(f_).first(n));
+  std::erase_if(tiles_, [&](const Tile& tile) { return !has_border(tile, grid); });
+  return done;
+}
+
+// The same; cubes of one node make a tile, and points that they share are asked for once.
+std::size_t TileScanner::evaluate_shared(const Field& field, const FieldGrid& grid, std::span<const GridCube> cubes) {
+  constexpr std::size_t most = std::size_t{1} << 23;  // points of the tiles, asked for or not
+  tiles_.clear(), asked_.clear();
+  std::size_t done = 0, n = 0;
+  while (done < cubes.size() && asked_.size() < field.batch_size()) {
+    const auto node = node_of(cubes[done]);
+    std::size_t end = done + 1;
+    while (end < cubes.size() && node_of(cubes[end]) == node) ++end;
+    Tile tile = tile_of(cubes.subspan(done, end - done), grid);
+    if (done > 0 && n + tile.count() > most) break;
+    tile.at = n, n += tile.count(), done = end;
+    reserve(n, 0);
+    place_shared(tile, grid);
+    tiles_.push_back(tile);
   }
-  return count;
+  const std::size_t count = asked_.size();
+  values_.resize(count);
+  field.evaluate({std::span(x_).first(count), std::span(y_).first(count), std::span(z_).first(count)}, values_);
+  for (std::size_t i = 0; i < count; ++i) f_[asked_[i]] = values_[i], inside_[asked_[i]] = values_[i] < 0.0f ? 1 : 0;
+  return done;
+}
+
+void TileScanner::reserve(std::size_t points, std::size_t asked) {
+  if (f_.size() < points) f_.resize(points), inside_.resize(points + 8);
+  if (x_.size() < asked) x_.resize(asked), y_.resize(asked), z_.resize(asked);
+}
+
+// Marks the points of all cubes, then asks for what is marked.
+void TileScanner::place_shared(const Tile& tile, const FieldGrid& grid) {
+  std::uint8_t* marks = &inside_[tile.at];
+  std::fill_n(marks, tile.count(), std::uint8_t{0});
+  for (std::size_t c = 0; c < tile.cubes.size(); ++c) {
+    const Tile part = tile_of(tile.cubes.subspan(c, 1), grid);
+    for (std::uint32_t i = 0; i < part.points[0]; ++i)
+      for (std::uint32_t j = 0; j < part.points[1]; ++j)
+        std::fill_n(&inside_[tile.index({part.start[0] + i, part.start[1] + j, part.start[2]})], part.points[2],
+                    std::uint8_t{1});
+  }
+  const auto marked = static_cast<std::size_t>(std::count(marks, marks + tile.count(), std::uint8_t{1}));
+  std::size_t next = asked_.size(), at = tile.at;
+  reserve(0, next + marked);
+  for (std::uint32_t i = 0; i < tile.points[0]; ++i)
+    for (std::uint32_t j = 0; j < tile.points[1]; ++j)
+      for (std::uint32_t k = 0; k < tile.points[2]; ++k, ++at) {
+        if (inside_[at] == 0) continue;
+        asked_.push_back(at);
+        x_[next] = grid.coordinate[0][tile.start[0] + i], y_[next] = grid.coordinate[1][tile.start[1] + j],
+        z_[next] = grid.coordinate[2][tile.start[2] + k];
+        ++next;
+      }
 }
 
 // One line along z, then one sheet of lines along y, then all sheets.
@@ -113,28 +176,30 @@ void TileScanner::place(const Tile& tile, const FieldGrid& grid) {
 // Marks what is inside; false when all points are outside, or inside and within the bounds.
 bool TileScanner::has_border(const Tile& tile, const FieldGrid& grid) {
   const auto [any, all] = mark_inside(&f_[tile.at], &inside_[tile.at], tile.count());
-  return any && !(all && grid.within(tile.cube));
+  return any && !(all && grid.within(tile.cubes[0]));
 }
 
 void TileScanner::scan(const Field& field, const FieldGrid& grid, std::span<const GridCube> cubes,
                        std::vector<Bracket>& brackets, FieldPart& part) {
-  for (; !cubes.empty(); cubes = cubes.subspan(tiles_.size())) {
-    const std::size_t n = collect(grid, cubes, field.batch_size());
-    for (const Tile& tile : tiles_) place(tile, grid);
-    field.evaluate({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)}, std::span(f_).first(n));
-    for (const Tile& tile : tiles_) {
-      if (!has_border(tile, grid)) continue;
-      const std::uint64_t side = tile.cube.side / 8;
-      for (std::uint64_t b = 0; b < side * side * side; ++b) {
-        std::array<std::uint32_t, 3> start{};
-        bool seen = true;
-        for (unsigned a = 0; a < 3; ++a) {
-          start[a] = tile.cube.corner[a] + morton_decode(b)[a] * 8u;
-          seen = seen && start[a] >= tile.start[a] && start[a] < tile.start[a] + tile.points[a];
-        }
-        if (seen) scan_brick(tile, grid, start, brackets, part);
-      }
+  while (!cubes.empty()) {
+    cubes =
+        cubes.subspan(wants_batches(field) ? evaluate_shared(field, grid, cubes) : evaluate_all(field, grid, cubes));
+    for (const Tile& tile : tiles_)
+      for (const GridCube& cube : tile.cubes) scan_cube(tile, cube, grid, brackets, part);
+  }
+}
+
+void TileScanner::scan_cube(const Tile& tile, const GridCube& cube, const FieldGrid& grid,
+                            std::vector<Bracket>& brackets, FieldPart& part) {
+  const std::uint64_t side = cube.side / 8;
+  for (std::uint64_t b = 0; b < side * side * side; ++b) {
+    std::array<std::uint32_t, 3> start{};
+    bool seen = true;
+    for (unsigned a = 0; a < 3; ++a) {
+      start[a] = cube.corner[a] + morton_decode(b)[a] * 8u;
+      seen = seen && start[a] >= tile.start[a] && start[a] < tile.start[a] + tile.points[a];
     }
+    if (seen) scan_brick(tile, grid, start, brackets, part);
   }
 }
 
@@ -145,8 +210,7 @@ void TileScanner::scan_brick(const Tile& tile, const FieldGrid& grid, const std:
   unsigned within_k = 0;
   for (int k = 0; k < 9; ++k) within_k |= grid.within(2, start[2] + k) ? 1u << k : 0u;
   const std::size_t stride[3] = {std::size_t{tile.points[1]} * tile.points[2], tile.points[2], 1};
-  std::size_t base = tile.at;
-  for (unsigned a = 0; a < 3; ++a) base += (corner[a] - tile.start[a]) * stride[a];
+  const std::size_t base = tile.index(corner);
   // Inside along z, in the bits of mask[i][j]; points beyond the bounds are outside.
   unsigned mask[9][9];
   bool within_j[9];
