@@ -280,12 +280,15 @@ class Job {
     return mesh;
   }
 
-  /// Onto the shape itself, or onto the samples where that would take calls of a field for single points.
-  std::unique_ptr<Projector> projector() const {
+  /// Whether single points of the shape are dear or cannot be had at all.
+  bool by_samples() const {
     const Field* field = shape_.field();
-    const bool by_samples =
-        shape_.compound() || shape_.sampler() || (field && wants_batches(*field) && field->has_gradient());
-    return by_samples ? make_projector(samples_) : make_projector(shape_, shape_.bounds, run_);
+    return shape_.compound() || shape_.sampler() || (field && wants_batches(*field) && field->has_gradient());
+  }
+
+  /// Onto the shape itself or onto the samples.
+  std::unique_ptr<Projector> projector() const {
+    return by_samples() ? make_projector(samples_) : make_projector(shape_, shape_.bounds, run_);
   }
 
   /// Vertices of seeds on creases go there, except where a ball has covered the crease.
@@ -330,6 +333,7 @@ class Job {
       fit_extremes(mesh, samples_, labels, projector_.get(), by_shell_ && !options_.wrap ? 3 * report_.spacing : 0,
                    run_, holds_);
     }
+    land(mesh);
     // Files hold single precision: what matters is that the mesh written does not intersect itself.
     const auto find = [&](Mesh m) {
       for (Vec3& v : m.vertices)
@@ -339,6 +343,15 @@ class Job {
     if (!holds_.chain.empty())
       for (const auto& [s, t] : find(mesh)) holds_.release(mesh, std::array{s, t});
     report_.self_intersections = untangle(mesh, projector_.get(), find, run_, holds_);
+  }
+
+  /// What was projected onto the samples only goes the rest of the way.
+  void land(Mesh& mesh) const {
+    if (!projector_ || shape_.field() == nullptr || !by_samples()) return;
+    std::vector<Vec3> places = mesh.vertices;
+    step_onto(places, *shape_.field(), shape_.bounds, 0.25 * samples_.grid.spacing);
+    for (std::uint32_t v = 0; v < places.size(); ++v)
+      if (!holds_.vertex(v) && cells_.balls.outside(places[v]) == places[v]) mesh.vertices[v] = places[v];
   }
 
   /// Where creases are so near to each other, or meet at so acute an angle, that triangles between them are slivers,

@@ -155,7 +155,38 @@ class SampleProjector : public Projector {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> codes_;  ///< of the blocks' bricks, ascending
 };
 
+/// Points and what a field says of them.
+struct Evaluated {
+  explicit Evaluated(std::size_t n) : x(n), y(n), z(n), f(n), dx(n), dy(n), dz(n) {}
+  void place(std::size_t i, const Vec3& p) {
+    x[i] = static_cast<float>(p.x), y[i] = static_cast<float>(p.y), z[i] = static_cast<float>(p.z);
+  }
+  PointBatch batch() const { return {x, y, z}; }
+  std::vector<float> x, y, z, f, dx, dy, dz;
+};
+
 }  // namespace
+
+void step_onto(std::span<Vec3> points, const Field& field, const Box& bounds, double limit) {
+  const std::size_t n = points.size();
+  Evaluated here(n), there(n);
+  std::vector<Vec3> target(n);
+  for (int step = 0; step < 2; ++step) {
+    for (std::size_t i = 0; i < n; ++i) here.place(i, points[i]);
+    field.evaluate_gradient(here.batch(), here.f, here.dx, here.dy, here.dz);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3 gradient{here.dx[i], here.dy[i], here.dz[i]};
+      const Vec3 move = gradient * (-here.f[i] / squared_norm(gradient)), to = points[i] + move;
+      bool well = is_finite(move) && squared_norm(move) <= limit * limit;
+      for (int a = 0; a < 3; ++a) well = well && to[a] - bounds.lo[a] > limit && bounds.hi[a] - to[a] > limit;
+      target[i] = well ? to : points[i];
+      there.place(i, target[i]);
+    }
+    field.evaluate(there.batch(), there.f);
+    for (std::size_t i = 0; i < n; ++i)
+      if (std::abs(there.f[i]) <= 0.5f * std::abs(here.f[i])) points[i] = target[i];
+  }
+}
 
 std::unique_ptr<Projector> make_projector(const SampleSet& samples) {
   return std::make_unique<SampleProjector>(samples);

@@ -36,6 +36,7 @@ TEST(RemoteField, IsMeshedWithASlope) {
   EXPECT_EQ(result.report.quality.euler, 0);
   const double volume = 2 * std::numbers::pi * std::numbers::pi * 0.35 * 0.35;
   EXPECT_NEAR(result.report.quality.volume, volume, 0.01 * volume);
+  for (const Vec3& p : result.mesh.vertices) EXPECT_NEAR(shape.field()->evaluate(p, nullptr), 0, 1e-5);
 }
 
 TEST(RemoteField, IsMeshedByShells) {

@@ -99,6 +99,47 @@ TEST(FieldProjector, CapsAreFacesOfTheBounds) {
   }
 }
 
+TEST(StepOnto, LandsWhatIsNearAndLeavesTheRest) {
+  const double h = 0.02;
+  const Shape shape = gallery_shape("torus");
+  const Field& field = *shape.field();
+  Random random(5);
+  std::vector<Vec3> near, far;
+  const auto somewhere = [&] { return 2 * random.uniform() - 1; };
+  while (near.size() < 300) {
+    Vec3 gradient, p{somewhere(), somewhere(), somewhere()};
+    for (int step = 0; step < 20; ++step) {
+      const double value = field.evaluate(p, &gradient);
+      p -= gradient * (value / squared_norm(gradient));
+    }
+    if (!(std::abs(field.evaluate(p, &gradient)) < 1e-9)) continue;
+    near.push_back(p + normalized(gradient) * (h * somewhere()));
+    far.push_back(p + normalized(gradient) * (5 * h));
+  }
+  const std::vector<Vec3> left = far;
+  const Box everywhere{{-9, -9, -9}, {9, 9, 9}};
+  step_onto(near, field, everywhere, 2 * h);
+  step_onto(far, field, everywhere, 2 * h);
+  EXPECT_EQ(far, left);
+  for (const Vec3& p : near) {
+    Vec3 gradient;
+    const double value = field.evaluate(p, &gradient);
+    EXPECT_LT(std::abs(value) / norm(gradient), 1e-2 * h * h);
+  }
+  // Near faces of the bounds, which may be the surface, nothing moves.
+  std::vector<Vec3> capped = near;
+  for (Vec3& p : capped) p *= 1.001;
+  const std::vector<Vec3> before = capped;
+  Box bounds;
+  for (const Vec3& p : capped) bounds.add(p);
+  step_onto(capped, field, bounds, 2 * h);
+  for (std::size_t i = 0; i < capped.size(); ++i)
+    for (int a = 0; a < 3; ++a)
+      if (std::min(before[i][a] - bounds.lo[a], bounds.hi[a] - before[i][a]) < h) {
+        EXPECT_EQ(capped[i], before[i]);
+      }
+}
+
 TEST(Projector, IndicatorsHaveNone) {
   evenmesh::Run run(1);
   const Shape shape =
