@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <tuple>
+#include <utility>
 
 #include "evenmesh/error.h"
 #include "gl/raster_view.h"
 #include "sample/rays.h"
+#include "sample/witnesses.h"
 
 namespace evenmesh::gl {
 namespace {
@@ -185,42 +187,76 @@ class Painter {
   std::vector<RasterFragment> fragments_;
 };
 
+/// Takes out what was put onto the bounds.
+void drop_made(DexelSlab& slab) {
+  std::uint32_t kept = 0, begin = 0;
+  for (std::size_t r = 0; r < slab.rays(); ++r) {
+    const std::uint32_t end = slab.begin[r + 1];
+    for (std::uint32_t c = std::exchange(begin, end); c < end; ++c)
+      if (!slab.crossings[c].made) slab.crossings[kept++] = slab.crossings[c];
+    slab.begin[r + 1] = kept;
+  }
+  slab.crossings.resize(kept);
+}
+
 }  // namespace
 
-TriDexel RasterSampler::scan(const Grid& grid, const Box& bounds, std::vector<PackedNormal>& normals, Run& run) const {
-  TriDexel solid;
+RasterSampler::Drawing RasterSampler::draw(const Grid& grid, const Box& bounds, Run& run) const {
+  Drawing drawing;
+  TriDexel& solid = drawing.opinions;
   solid.grid = grid;
-  std::array<DexelAxis, 3> found;
   const Range range = range_of(grid, bounds);
-  if (range.empty()) return solid;
+  if (range.empty()) return drawing;
   Painter painter(*device_, grid, placement_, bounds_, name_);
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const auto q = static_cast<std::size_t>(dexel_q_axis[a]);
     const std::size_t slabs = (grid.size[q] + brick_size - 1) / brick_size;
-    found[a].slabs.resize(slabs), solid.axes[a].slabs.resize(slabs);
+    drawing.found[a].slabs.resize(slabs), solid.axes[a].slabs.resize(slabs);
     for (std::uint32_t row = range.first[q] / view_size * view_size; row <= range.last[q]; row += view_size) {
       Band band(grid, range, axis, row);
       for (const RayWindow& window : band.windows()) {
         run.throw_if_cancelled();
         painter.paint(window, band);
       }
-      band.sort(normals, run);
-      const RayCounts counts = band.resolve(found[a], solid.axes[a], run);
+      band.sort(drawing.normals, run);
+      const RayCounts counts = band.resolve(drawing.found[a], solid.axes[a], run);
       solid.unresolved += counts.unresolved, solid.cut_by_bounds = solid.cut_by_bounds || counts.capped;
     }
   }
-  vote(solid, found, nullptr, run, rounding);
-  return solid;
+  return drawing;
+}
+
+TriDexel RasterSampler::scan(const Grid& grid, const Box& bounds, std::vector<PackedNormal>& normals, Run& run) const {
+  Drawing drawing = draw(grid, bounds, run);
+  vote(drawing.opinions, drawing.found, nullptr, run, rounding);
+  normals = std::move(drawing.normals);
+  return std::move(drawing.opinions);
 }
 
 SampleSet RasterSampler::sample(const Grid& grid, const Box& bounds, Run& run) const {
   std::vector<PackedNormal> normals;
   const TriDexel solid = scan(grid, bounds, normals, run);
   if (solid.size() == 0 && solid.unresolved > 0)
-    throw UnusableInput(fmt::format(
-        "'{}' bounds no solid: its rays enter and do not leave, or the other way; draw its back faces, too", name_));
+    throw UnusableInput(
+        fmt::format("'{}' bounds no solid: its rays enter and do not leave, or the other way; draw its back faces, "
+                    "too, or mesh it as an open surface (--method shell)",
+                    name_));
   return sample_dexels(solid, normals, run);
+}
+
+SampleSet RasterSampler::sample_surface(const Grid& grid, const Box& bounds, Run& run) const {
+  Drawing drawing = draw(grid, bounds, run);
+  for (DexelAxis& axis : drawing.found)
+    for (DexelSlab& slab : axis.slabs) drop_made(slab);
+  TriDexel surface;
+  surface.grid = grid, surface.axes = std::move(drawing.found);
+  return sample_dexels(surface, drawing.normals, run);
+}
+
+double RasterSampler::solidity(const Box& bounds, Run& run) const {
+  constexpr std::size_t resolution = 64;  // as that of meshes
+  return agreement(draw(make_grid(bounds, resolution), bounds, run).opinions);
 }
 
 std::shared_ptr<const Sampler> RasterSampler::moved(const Affine& transform) const {

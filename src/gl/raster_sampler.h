@@ -1,7 +1,9 @@
 #pragma once
-/// What shaders draw, as samples of a solid.
+/// What shaders draw, as samples of a solid or a surface.
 
+#include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "gl/raster_device.h"
@@ -17,12 +19,21 @@ class RasterSampler final : public Sampler {
       : device_(std::move(device)), name_(std::move(name)), bounds_(bounds), placement_(placement) {}
 
   SampleSet sample(const Grid& grid, const Box& bounds, Run& run) const override;
+  SampleSet sample_surface(const Grid& grid, const Box& bounds, Run& run) const override;
+  double solidity(const Box& bounds, Run& run) const override;
   std::shared_ptr<const Sampler> moved(const Affine& transform) const override;
 
   /// The crossings, and the normals that they count. Cost: two passes of drawing per 512² rays at most, then sorting.
   TriDexel scan(const Grid& grid, const Box& bounds, std::vector<PackedNormal>& normals, Run& run) const;
 
  private:
+  struct Drawing {
+    std::array<DexelAxis, 3> found;     ///< all that rays meet
+    TriDexel opinions;                  ///< the solid that each direction sees by itself
+    std::vector<PackedNormal> normals;  ///< counted by crossings
+  };
+  Drawing draw(const Grid& grid, const Box& bounds, Run& run) const;
+
   std::shared_ptr<RasterDevice> device_;
   std::string name_;
   Box bounds_;

@@ -28,6 +28,7 @@
 #include "sample/sample.h"
 #include "shape/bounds.h"
 #include "shape/field.h"
+#include "shape/sampler.h"
 
 namespace evenmesh {
 namespace {
@@ -116,7 +117,9 @@ class Job {
     if (options.method == Method::raster && (options.wrap || shape.points()))
       throw InvalidInput("rays need a solid: points and wraps are meshed by the shell method");
     if (options.method == Method::shell || options.wrap || shape.points()) return true;
-    return options.method == Method::automatic && shape.mesh() && solidity(*shape.mesh(), run) < least_solidity;
+    if (options.method != Method::automatic) return false;
+    if (const Sampler* sampler = shape.sampler()) return sampler->solidity(shape.bounds, run) < least_solidity;
+    return shape.mesh() && solidity(*shape.mesh(), run) < least_solidity;
   }
 
   void find_shape_bounds() {

@@ -14,12 +14,14 @@
 #include "sample/density.h"
 #include "sample/filled_gaps.h"
 #include "sample/sample.h"
+#include "shape/sampler.h"
 
 namespace evenmesh {
 namespace {
 
 constexpr double wanted_alpha = 100, least_alpha = 50;
 constexpr double samples_per_voxel_area = 1.5;  ///< Σ |n_a|, the mean over all directions
+constexpr std::size_t coarse = 128;             ///< resolution at which areas are estimated
 constexpr unsigned default_thickness = 2, most_thickness = 20;
 
 double area_of(const Mesh& mesh) {
@@ -53,6 +55,8 @@ double estimated_area(const Shape& shape, double spacing, Run& run) {
   if (const Mesh* mesh = shape.mesh()) return area_of(*mesh);
   if (const PointCloud* points = shape.points())
     return 0.75 * static_cast<double>(points->points.size()) * spacing * spacing;
+  if (const Sampler* sampler = shape.sampler())
+    return sampler->sample_surface(make_grid(shape.bounds, coarse), shape.bounds, run).total_area;
   return scout_scale(shape, 0, run).area;
 }
 
@@ -96,7 +100,10 @@ ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& rep
 
 SiteVoxels voxelize(const Shape& shape, const ShellPlan& plan, Run& run) {
   const unsigned margin = std::max(plan.thickness, plan.bridge) + plan.thickness + 2;
-  if (shape.compound() || shape.sampler())
+  if (const Sampler* sampler = shape.sampler())
+    return voxelize_samples(sampler->sample_surface(make_grid(shape.bounds, plan.resolution), shape.bounds, run),
+                            margin, run);
+  if (shape.compound())
     return voxelize_samples(sample_shape(shape, make_grid(shape.bounds, plan.resolution), run), margin, run);
   const VoxelGrid grid = make_voxel_grid(shape.bounds, plan.resolution, margin);
   if (const Mesh* mesh = shape.mesh()) return voxelize_mesh(*mesh, grid, run);

@@ -42,21 +42,22 @@ int Witnesses::inside(const Vec3& p) const {
   return count;
 }
 
+double agreement(const TriDexel& rays) {
+  std::size_t agreed = 0, any = 0;
+  const auto& size = rays.grid.size;
+  for (std::uint32_t k = 0; k < size[2]; ++k)
+    for (std::uint32_t j = 0; j < size[1]; ++j)
+      for (std::uint32_t i = 0; i < size[0]; ++i) {
+        int count = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          count += inside_along(rays, axis, {double(i), double(j), double(k)});
+        agreed += count == 3, any += count > 0;
+      }
+  return any == 0 ? 0 : static_cast<double>(agreed) / static_cast<double>(any);
+}
+
 double solidity(const Mesh& mesh, Run& run) {
-  return with_threads(run, [&] {
-    const TriDexel rays = scan_rays(mesh, make_grid(mesh.bounds(), 64), run);
-    std::size_t agreed = 0, any = 0;
-    const auto& size = rays.grid.size;
-    for (std::uint32_t k = 0; k < size[2]; ++k)
-      for (std::uint32_t j = 0; j < size[1]; ++j)
-        for (std::uint32_t i = 0; i < size[0]; ++i) {
-          int count = 0;
-          for (std::size_t axis = 0; axis < 3; ++axis)
-            count += inside_along(rays, axis, {double(i), double(j), double(k)});
-          agreed += count == 3, any += count > 0;
-        }
-    return any == 0 ? 0 : static_cast<double>(agreed) / static_cast<double>(any);
-  });
+  return with_threads(run, [&] { return agreement(scan_rays(mesh, make_grid(mesh.bounds(), 64), run)); });
 }
 
 }  // namespace evenmesh

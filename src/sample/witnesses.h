@@ -27,4 +27,8 @@ class Witnesses {
   std::vector<Frame> frames_;
 };
 
+/// The share of the grid points inside by one direction's rays that are inside by all three's; 0 where none is.
+/// @param rays  without a vote
+double agreement(const TriDexel& rays);
+
 }  // namespace evenmesh

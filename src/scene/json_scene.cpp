@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -275,6 +276,30 @@ class JsonReader {
     const std::string name = given.text();
     return at(given, [&] { return workshop_.placed(workshop_.shader_file(name, options), placement); });
   }
+  /// What two shaders draw; "default" stands for a built-in one.
+  Shape read_raster_node(const JsonPlace& place, const Affine* placement, std::size_t) const {
+    const JsonPlace given = place.member("raster");
+    if (!given.value().is_array() || given.value().size() != 2)
+      given.refuse("needs two files: a vertex and a fragment shader, or \"default\"");
+    RasterOptions options;
+    options.bounds = bounds_of(place);
+    if (place.has("parameters")) options.definitions = definitions_of(place.member("parameters"));
+    if (place.has("geometry") == place.has("vertices"))
+      place.refuse("needs either 'geometry', a mesh file that is drawn, or 'vertices', a number without a mesh");
+    if (place.has("geometry")) {
+      const JsonPlace mesh = place.member("geometry");
+      const std::string name = mesh.text();
+      at(mesh, [&] { options.geometry = *workshop_.mesh_file(name).mesh(); });
+    } else {
+      const JsonPlace count = place.member("vertices");
+      const double number = count.number();
+      if (!(number >= 3 && number <= 3e8) || number != std::floor(number))
+        count.refuse("needs a whole number, 3 to 3e8");
+      options.vertex_count = static_cast<std::size_t>(number);
+    }
+    const std::string vertex = given.element(0).text(), fragment = given.element(1).text();
+    return at(given, [&] { return workshop_.placed(workshop_.raster_files(vertex, fragment, options), placement); });
+  }
   Shape read_dexel_node(const JsonPlace& place, const Affine* placement, std::size_t) const {
     const JsonPlace given = place.member("dexels");
     const std::string name = given.text();
@@ -300,6 +325,7 @@ const std::vector<JsonReader::Kind>& JsonReader::kinds() {
       {"gallery", {}, &JsonReader::read_gallery},
       {"points", {}, &JsonReader::read_points_node},
       {"glsl", {"entry", "parameters", "lipschitz", "level", "bounds"}, &JsonReader::read_shader},
+      {"raster", {"geometry", "vertices", "parameters", "bounds"}, &JsonReader::read_raster_node},
       {"dexels", {}, &JsonReader::read_dexel_node},
   };
   return all;

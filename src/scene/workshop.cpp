@@ -71,6 +71,11 @@ Shape Workshop::shader_file(const std::string& name, const GlslOptions& options)
   return read_glsl(file(name), options);
 }
 
+Shape Workshop::raster_files(const std::string& vertex, const std::string& fragment, RasterOptions options) const {
+  const auto path = [&](const std::string& name) { return name == "default" ? fs::path() : file(name); };
+  return read_raster(path(vertex), path(fragment), std::move(options));
+}
+
 Shape Workshop::placed(const Shape& shape, const Affine* placement) {
   if (placement == nullptr) return shape;
   if (const Mesh* mesh = shape.mesh()) spend(mesh->triangles.size());

@@ -27,6 +27,8 @@ class Workshop {
   Shape dexel_file(const std::string& name);
   /// The solid of a shader file.
   Shape shader_file(const std::string& name, const GlslOptions& options) const;
+  /// The solid that two shader files draw; "default" is none.
+  Shape raster_files(const std::string& vertex, const std::string& fragment, RasterOptions options) const;
 
   /// The shape moved; `placement` nullptr: where it is.
   Shape placed(const Shape& shape, const Affine* placement);

@@ -1,5 +1,5 @@
 #pragma once
-/// Solids that sample themselves.
+/// Solids and surfaces that sample themselves.
 
 #include <memory>
 
@@ -12,7 +12,7 @@ namespace evenmesh {
 struct Grid;
 struct SampleSet;
 
-/// A solid known by where rays enter and leave it. Callable from one thread at a time.
+/// A solid known by where rays enter and leave it, or a surface that they meet. Callable from one thread at a time.
 class Sampler {
  public:
   virtual ~Sampler() = default;
@@ -23,7 +23,14 @@ class Sampler {
   /// @throws UnusableInput  the solid cannot be asked
   virtual SampleSet sample(const Grid& grid, const Box& bounds, Run& run) const = 0;
 
-  /// The same solid moved. @param transform  not singular
+  /// All that rays meet on the edges of a grid, whether there is an inside between or not; open ends stay open. What
+  /// lies beyond the bounds is left out.
+  virtual SampleSet sample_surface(const Grid& grid, const Box& bounds, Run& run) const = 0;
+
+  /// How far the rays of the three directions agree on what is inside; 1 for a solid, as solidity() of meshes.
+  virtual double solidity(const Box& bounds, Run& run) const = 0;
+
+  /// The same moved. @param transform  not singular
   virtual std::shared_ptr<const Sampler> moved(const Affine& transform) const = 0;
 };
 

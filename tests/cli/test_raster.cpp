@@ -45,6 +45,24 @@ TEST_F(Raster, DrawsTheExamples) {
   EXPECT_TRUE(Json::parse(info("c.ply")).at("closed").get<bool>());
 }
 
+TEST_F(Raster, DrawsOpenSurfacesAndPartsOfScenes) {
+  const Outcome sheet = run({"mesh", "--raster", examples + "sheet.vert", "default", "--raster-vertices", "60000",
+                             "--bounds=-1.2,-1.2,-0.5,1.2,1.2,0.5", "-n", "500", "-o", "a.ply", "-q"});
+  if (is_left_out(sheet)) return;
+  ASSERT_EQ(sheet.status, 0) << sheet.err;
+  const Json figures = Json::parse(info("a.ply"));
+  EXPECT_EQ(figures.at("euler"), 1);
+  EXPECT_EQ(figures.at("non_manifold_edges"), 0);
+  EXPECT_GT(figures.at("boundary_edges"), 40);
+  // A ring that is drawn, and half of it taken away.
+  write("scene.json", R"({"difference": [{"raster": [")" + examples + R"(twist.vert", "default"], "vertices": 12288,
+        "bounds": [-1.5, -1.5, -0.5, 1.5, 1.5, 0.5], "parameters": {"turns": 0.5}},
+      {"implicit": "x", "bounds": [-2, -2, -2, 2, 2, 2]}]})");
+  const Outcome half = run({"mesh", "scene.json", "-n", "1500", "-o", "b.ply", "-q"});
+  ASSERT_EQ(half.status, 0) << half.err;
+  expect_solid(Json::parse(info("b.ply")), 2, std::numbers::pi * 0.32);
+}
+
 TEST_F(Raster, NamesTheUsersFileAndLine) {
   write("tetra.obj", tetrahedron_obj);
   write("bad.frag", "void main() {\n  float x = nothing;\n}\n");

@@ -279,6 +279,39 @@ TEST(Raster, DiscardsAndFindsNothing) {
   EXPECT_GT(sampled(shape_from_raster({.fragment = half, .geometry = ball}), 60).unresolved, 10u);
 }
 
+/// Twenty by twenty squares of a waving sheet, which has a rim and no inside.
+const std::string sheet_vertex = R"(
+uniform mat4 viewProjection;
+void main() {
+  const ivec2 corners[6] = ivec2[6](ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), ivec2(0, 1), ivec2(1, 0), ivec2(1, 1));
+  int square = gl_VertexID / 6;
+  vec2 at = (vec2(square % 20, square / 20) + vec2(corners[gl_VertexID % 6])) / 10.0 - 1.0;
+  gl_Position = viewProjection * vec4(at, 0.2 * sin(3.0 * at.x), 1.0);
+}
+)";
+
+TEST(Raster, SheetsAreSurfacesAndNoSolids) {
+  const Shape sheet = shape_from_raster(
+      {.vertex = sheet_vertex, .vertex_count = 2400, .bounds = {{-1.5, -1.5, -0.5}, {1.5, 1.5, 0.5}}});
+  const Shape ball = shape_from_raster({.geometry = make_icosphere(4)});
+  evenmesh::Run& run = evenmesh::Run::silent();
+  EXPECT_LT(sheet.sampler()->solidity(sheet.bounds, run), 0.1);
+  EXPECT_GT(ball.sampler()->solidity(ball.bounds, run), 0.99);
+  const SampleSet samples = sheet.sampler()->sample_surface(make_grid(sheet.bounds, 100), sheet.bounds, run);
+  const Fit worst = fit(
+      samples, [](const Vec3& p) { return p.z - 0.2 * std::sin(3 * p.x); },
+      [](const Vec3& p) {
+        return Vec3{-0.6 * std::cos(3 * p.x), 0, 1};
+      });
+  EXPECT_LT(worst.distance, 0.005);  // of the facets
+  double length = 0;                 // of the wave
+  for (double x = -1; x < 1; x += 1e-3) length += 1e-3 * std::hypot(1, 0.6 * std::cos(3 * x));
+  EXPECT_NEAR(samples.total_area, 2 * length, 0.05);
+  // Beyond the bounds nothing is put onto them.
+  const Box part{{-1.5, -1.5, -0.5}, {0, 1.5, 0.5}};
+  EXPECT_NEAR(sheet.sampler()->sample_surface(make_grid(sheet.bounds, 100), part, run).total_area, length, 0.05);
+}
+
 TEST(Raster, TakesDefinitions) {
   const std::string vertex =
       "in vec3 position;\nuniform mat4 viewProjection;\nuniform float size;\n"

@@ -167,6 +167,15 @@ TEST_F(Json, ShadersThatCannotBeReadAreNamedWithTheirPlace) {
   expect_says(refusal(R"({"glsl": "a.frag", "parameters": {"a": {}}})"), "scene.json: parameters.a: ");
 }
 
+TEST_F(Json, DrawnSolidsAreNamedWithTheirPlace) {
+  expect_says(refusal(R"({"raster": "a.vert"})"), "scene.json: raster: needs two files");
+  expect_says(refusal(R"({"raster": ["a.vert", "default"]})"), "needs either 'geometry'");
+  expect_says(refusal(R"({"raster": ["a.vert", "default"], "vertices": 1.5})"), "vertices: needs a whole number");
+  expect_says(refusal(R"({"union": [{"raster": ["a.vert", "default"], "vertices": 36}]})"),
+              "scene.json: union[0].raster: there is no file");
+  expect_says(refusal(R"({"raster": ["default", "default"], "geometry": "a.off"})"), "geometry: there is no file");
+}
+
 TEST_F(Json, DepthAndSizeAreLimited) {
   const auto nested = [](std::size_t depth) {
     std::string text;
