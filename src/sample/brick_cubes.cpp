@@ -66,6 +66,16 @@ void bricks_of_block(const SampleSet& samples, const BlockTable& table, std::siz
   }
 }
 
+/// Bit 8a + b of a word of 8 × 8 bits becomes bit 8b + a.
+std::uint64_t transposed(std::uint64_t x) {
+  std::uint64_t swap = (x ^ x >> 7) & 0x00aa00aa00aa00aaull;
+  x ^= swap ^ swap << 7;
+  swap = (x ^ x >> 14) & 0x0000cccc0000ccccull;
+  x ^= swap ^ swap << 14;
+  swap = (x ^ x >> 28) & 0x00000000f0f0f0f0ull;
+  return x ^ swap ^ swap << 28;
+}
+
 }  // namespace
 
 std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const Run& run) {
@@ -85,7 +95,7 @@ std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const Run& run) {
 
 void CubeWalker::clear_all() {
   sample_.fill(0);
-  crossed_.fill(0);
+  unload();
 }
 
 void CubeWalker::load(const CubeBrick& brick) {
@@ -101,32 +111,35 @@ void CubeWalker::load(const CubeBrick& brick) {
       const int x = i + 8 * dx, y = j + 8 * dy, z = k + 8 * dz;
       sample_[at(axis, x, y, z)] = s;
       crossed_[(axis * side + z) * side + y] |= static_cast<std::uint16_t>(1u << x);
+      lines_[z] |= static_cast<std::uint16_t>(1u << y);
     }
   }
 }
 
 void CubeWalker::unload() {
-  crossed_.fill(0);
+  crossed_.fill(0), lines_.fill(0);
 }
 
 CubeWalker::Row CubeWalker::row(int j, int k) const {
   const auto bits = [&](int axis, int jj, int kk) { return crossed_[(axis * side + kk) * side + jj]; };
-  Row r;
+  // By edge first: byte e, bit i; then turned over.
+  std::uint64_t low = 0, high = 0;
+  unsigned any = 0;
   for (int b = 0; b < 2; ++b)
     for (int a = 0; a < 2; ++a) {
-      r.bits[0 + a + 2 * b] = bits(0, j + a, k + b);
-      r.bits[4 + a + 2 * b] = static_cast<std::uint16_t>(bits(1, j, k + b) >> a);
-      r.bits[8 + a + 2 * b] = static_cast<std::uint16_t>(bits(2, j + b, k) >> a);
+      const unsigned x = bits(0, j + a, k + b) & 0xffu, y = bits(1, j, k + b) >> a & 0xffu,
+                     z = bits(2, j + b, k) >> a & 0xffu;
+      const int e = 8 * (a + 2 * b);
+      low |= std::uint64_t{x} << e | std::uint64_t{y} << (32 + e);
+      high |= std::uint64_t{z} << e;
+      any |= x | y | z;
     }
-  unsigned any = 0;
-  for (const std::uint16_t b : r.bits) any |= b;
-  r.active = any & 0xff;
-  return r;
+  return {transposed(low), transposed(high), any};
 }
 
 unsigned CubeWalker::inside_corners(const Row& row, int i, int j, int k) const {
-  unsigned crossed = 0;
-  for (int e = 0; e < 12; ++e) crossed |= (row.bits[e] >> i & 1u) << e;
+  const unsigned crossed =
+      static_cast<unsigned>(row.low >> 8 * i & 0xff) | static_cast<unsigned>(row.high >> 8 * i & 0xff) << 8;
   const unsigned corners = corners_of_crossed_edges()[crossed];
   if (corners == 0) throw Error("internal error: the samples do not bound a solid");
   const int edge = __builtin_ctz(crossed), axis = edge >> 2, a = edge & 1, b = edge >> 1 & 1;

@@ -30,23 +30,16 @@ class CubeWalker {
   /// counter-clockwise from outside, and the edges of the cube they lie on (see CubeLoops).
   template <typename Visit>
   void walk_edges(const CubeBrick& brick, const Visit& visit) {
-    load(brick);
     const auto& loops = cube_loops();
-    for (int k = 0; k < 8; ++k)
-      for (int j = 0; j < 8; ++j) {
-        const Row row = this->row(j, k);
-        for (unsigned active = row.active; active != 0; active &= active - 1) {
-          const int i = __builtin_ctz(active);
-          const CubeLoops& cube = loops[inside_corners(row, i, j, k)];
-          std::uint32_t loop[12];
-          for (int l = 0; l < cube.count; ++l) {
-            int length = 0;
-            for (int e = cube.start[l]; e < cube.start[l + 1]; ++e) loop[length++] = sample_on(cube.edge[e], i, j, k);
-            visit(static_cast<const std::uint32_t*>(loop), &cube.edge[cube.start[l]], length);
-          }
-        }
+    walk_cubes(brick, [&](unsigned corners, int i, int j, int k) {
+      const CubeLoops& cube = loops[corners];
+      std::uint32_t loop[12];
+      for (int l = 0; l < cube.count; ++l) {
+        int length = 0;
+        for (int e = cube.start[l]; e < cube.start[l + 1]; ++e) loop[length++] = sample_on(cube.edge[e], i, j, k);
+        visit(static_cast<const std::uint32_t*>(loop), &cube.edge[cube.start[l]], length);
       }
-    unload();
+    });
   }
   /// Calls visit(const std::uint32_t* loop, int length).
   template <typename Visit>
@@ -59,7 +52,8 @@ class CubeWalker {
   void walk_cubes(const CubeBrick& brick, const Visit& visit) {
     load(brick);
     for (int k = 0; k < 8; ++k)
-      for (int j = 0; j < 8; ++j) {
+      for (unsigned rows = rows_with_crossings(k); rows != 0; rows &= rows - 1) {
+        const int j = __builtin_ctz(rows);
         const Row row = this->row(j, k);
         for (unsigned active = row.active; active != 0; active &= active - 1) {
           const int i = __builtin_ctz(active);
@@ -71,12 +65,18 @@ class CubeWalker {
 
  private:
   static constexpr int side = brick_size + 1;
+  /// The cubes that share j and k.
   struct Row {
-    std::array<std::uint16_t, 12> bits;  ///< per cube edge: crossings of the row's cubes, bit i
-    unsigned active;
+    std::uint64_t low, high;  ///< byte i: crossed edges of cube i, edges 0 to 7 and 8 to 11
+    unsigned active;          ///< bit i: cube i has any
   };
 
   static int at(int axis, int i, int j, int k) { return ((axis * side + k) * side + j) * side + i; }
+  /// Bit j: the cubes of row j, k may be crossed.
+  unsigned rows_with_crossings(int k) const {
+    const unsigned lines = lines_[k] | lines_[k + 1];
+    return (lines | lines >> 1) & 0xffu;
+  }
   Row row(int j, int k) const;
   unsigned inside_corners(const Row& row, int i, int j, int k) const;
   std::uint32_t sample_on(int edge, int i, int j, int k) const {
@@ -92,6 +92,7 @@ class CubeWalker {
   const SampleSet& samples_;
   std::array<std::uint32_t, 3 * side * side * side> sample_{};
   std::array<std::uint16_t, 3 * side * side> crossed_{};  ///< [axis][k][j], bit i
+  std::array<std::uint16_t, side> lines_{};  ///< [k], bit j: there is a crossing on an edge from a point there
 };
 
 }  // namespace evenmesh
