@@ -81,7 +81,7 @@ class DistanceLattice {
   /// @param step   side of the smallest cells, model units
   /// @param levels  of cells above those
   DistanceLattice(const SurfaceDistance& surface, double level, double step, int levels, const Box& box, Run& run)
-      : surface_(surface), level_(level), step_(step), levels_(levels), origin_(box.lo) {
+      : surface_(surface), level_(level), step_(step), origin_(box.lo) {
     int top = levels;
     while (std::ldexp(step, top) < box.longest_side()) ++top;
     top_ = top;
@@ -262,7 +262,7 @@ class DistanceLattice {
 
   const SurfaceDistance& surface_;
   double level_, step_;
-  int levels_, top_ = 0;
+  int top_ = 0;
   Vec3 origin_;
   std::vector<Nearest> node_;
   std::unordered_map<std::uint64_t, std::uint32_t> node_of_;

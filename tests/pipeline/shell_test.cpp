@@ -148,7 +148,7 @@ TEST(ShellMethod, GivesTheShellWhenAsked) {
     ASSERT_EQ(result.shell.values.size(), result.shell.voxels.size());
     for (std::size_t i = 0; i < result.shell.voxels.size(); ++i) {
       const auto& v = result.shell.voxels[i];
-      const Vec3 p = result.shell.origin + result.shell.side * Vec3(v[0], v[1], v[2]);
+      const Vec3 p = result.shell.origin + result.shell.side * Vec3{double(v[0]), double(v[1]), double(v[2])};
       EXPECT_NEAR(result.shell.values[i], std::abs(norm(p) - 1), 1.2 * result.shell.side);
     }
     const std::size_t cut = result.shell_cut.voxels.size();
