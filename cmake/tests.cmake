@@ -38,6 +38,9 @@ endforeach()
 if(TARGET test_pipeline)
   target_link_libraries(test_pipeline PRIVATE evenmesh_io)  # models are files
 endif()
+if(TARGET test_gl AND EVENMESH_GL)
+  target_link_libraries(test_gl PRIVATE evenmesh_pipeline)  # what is evaluated there is meshed, too
+endif()
 
 if(TARGET test_io AND NOT EVENMESH_SANITIZE)
   target_link_libraries(test_io PRIVATE openvdb Imath)  # reads back what the plugin wrote
