@@ -6,12 +6,8 @@ include(GoogleTest)
 add_custom_target(unit_tests)  # without the program, unless a test drives it
 
 function(evenmesh_test room)
-  set(folder tests/${room})
-  if(room STREQUAL "gl" AND NOT EVENMESH_GL)
-    set(folder tests/gl/off)
-  endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
-  if(NOT EVENMESH_GL)
+  file(GLOB sources CONFIGURE_DEPENDS tests/${room}/*.cpp)
+  if(NOT EVENMESH_GL)  # shaders and --raster need it; tests/without_gl sees that they are refused
     list(FILTER sources EXCLUDE REGEX "cli/test_(shaders|raster)")
   endif()
   if(EVENMESH_SANITIZE)  # OpenVDB takes minutes to build so, and is not ours
@@ -32,11 +28,22 @@ function(evenmesh_test room)
 endfunction()
 
 foreach(room ${EVENMESH_ROOMS})
-  evenmesh_test(${room} evenmesh_${room})
+  if(EVENMESH_GL OR NOT room STREQUAL "gl")  # else tests/without_gl
+    evenmesh_test(${room} evenmesh_${room})
+  endif()
 endforeach()
 
 if(TARGET test_pipeline)
   target_link_libraries(test_pipeline PRIVATE evenmesh_io)  # models are files
+endif()
+if(TARGET test_gl)
+  target_link_libraries(test_gl PRIVATE evenmesh_pipeline)  # what is evaluated there is meshed, too
+  # Where there is no driver, these tests fail; none is skipped.
+  add_test(NAME gl.AMissingDriverIsAFailure
+           COMMAND test_gl --gtest_filter=Context.IsThereAndHasAName:*/SampleForms.NothingInsideIsSaid/*)
+  set_tests_properties(gl.AMissingDriverIsAFailure PROPERTIES
+                       ENVIRONMENT "__EGL_VENDOR_LIBRARY_DIRS=/nonexistent;LIBGL_DRIVERS_PATH=/nonexistent"
+                       PASS_REGULAR_EXPRESSION "3 FAILED TESTS")
 endif()
 
 if(TARGET test_io AND NOT EVENMESH_SANITIZE)
@@ -53,6 +60,35 @@ endif()
 if(TARGET test_cli)
   add_dependencies(test_cli evenmesh)
   target_compile_definitions(test_cli PRIVATE EVENMESH_PROGRAM="$<TARGET_FILE:evenmesh>")
+endif()
+
+# What is said without OpenGL. Builds that have it make the program once more, with what stands for the room gl: no
+# second build is needed.
+if(NOT EVENMESH_SANITIZE)
+  set(stand_in evenmesh_gl)
+  set(program evenmesh)
+  if(EVENMESH_GL)
+    set(stand_in evenmesh_gl_off)
+    set(program evenmesh_without_gl)
+    file(GLOB sources CONFIGURE_DEPENDS src/gl/off/*.cpp)
+    add_library(${stand_in} STATIC ${sources} src/gl/is_glsl.cpp)
+    target_link_libraries(${stand_in} PUBLIC evenmesh_shape PRIVATE evenmesh_flags)
+    set(objects $<TARGET_OBJECTS:evenmesh>)
+    foreach(room ${EVENMESH_ROOMS})
+      if(NOT room STREQUAL "gl")
+        list(APPEND objects $<TARGET_OBJECTS:evenmesh_${room}>)
+      endif()
+    endforeach()
+    add_executable(${program} ${objects})
+    set_target_properties(${program} PROPERTIES LINKER_LANGUAGE CXX)
+    set(libraries ${EVENMESH_LIBRARIES})
+    list(REMOVE_ITEM libraries PkgConfig::EPOXY)
+    target_link_libraries(${program} PRIVATE evenmesh_flags ${stand_in} ${libraries})
+  endif()
+  evenmesh_test(without_gl ${stand_in})
+  target_sources(test_without_gl PRIVATE tests/cli/program.cpp)
+  target_compile_definitions(test_without_gl PRIVATE EVENMESH_PROGRAM="$<TARGET_FILE:${program}>")
+  add_dependencies(test_without_gl ${program})
 endif()
 
 # Somebody else's project: finds the installed package, builds against it, runs.

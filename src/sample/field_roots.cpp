@@ -127,8 +127,9 @@ void RootFinder::clip_to_bounds(std::span<Bracket> brackets) {
   }
 }
 
-// One evaluation at the chord's root; kept is where the next chord is 0, if that is hardly elsewhere. The gradients are
-// left for the end.
+// One evaluation at the chord's root, which splits the bracket. Kept is where the next chord is 0, if that is hardly
+// elsewhere, and so is the line through the other part: at kinks and jumps the steep side alone would draw the chords
+// to the end of the flat one. The gradients are left for the end.
 void RootFinder::first_values(std::span<Bracket> brackets) {
   for (std::uint32_t i = 0; i < brackets.size(); ++i) {
     if (roots_[i].made) continue;
@@ -141,10 +142,13 @@ void RootFinder::first_values(std::span<Bracket> brackets) {
   for (std::size_t s = 0; s < active_.size(); ++s) {
     Bracket& b = brackets[active_[s]];
     Root& root = roots_[active_[s]];
+    const bool low = inside(f_[s]) == b.code.lower_end_inside();
+    const float behind_t = low ? b.t_lo : b.t_hi, behind_f = low ? b.f_lo : b.f_hi;
+    const float step = f_[s] == 0.0f ? 0.0f : f_[s] * (root.t - behind_t) / (f_[s] - behind_f);
     narrow(b, root.t, f_[s]);
     const float chord = chord_root(b);
-    const bool known = std::isfinite(b.f_lo) && std::isfinite(b.f_hi);
-    if (known && std::abs(chord - root.t) < kAgreement)
+    const bool known = std::isfinite(b.f_lo) && std::isfinite(b.f_hi) && std::isfinite(behind_f);
+    if (known && std::abs(chord - root.t) < kAgreement && std::abs(step) < kAgreement)
       root.t = chord;
     else
       active_[left++] = active_[s];

@@ -1,6 +1,14 @@
-#include "pipeline/pipeline_testing.h"
+#include "pipeline/gallery_checks.h"
 
 namespace evenmesh {
+namespace testing {
+
+INSTANTIATE_TEST_SUITE_P(Gallery, EasyShape,
+                         ::testing::Values(Easy{on_cpu, "sphere", 5000}, Easy{on_cpu, "octic", 5000},
+                                           Easy{on_cpu, "tangle", 5000}, Easy{on_cpu, "menger-2", 5000}),
+                         name_of_easy);
+
+}  // namespace testing
 namespace {
 
 /// The difficult shapes of the gallery: thin walls, many handles, places where the surface touches itself.
@@ -12,7 +20,7 @@ struct Difficult {
   }
 };
 
-class DifficultShape : public testing::TestWithParam<Difficult> {};
+class DifficultShape : public ::testing::TestWithParam<Difficult> {};
 
 TEST_P(DifficultShape, IsClosedAndTwoManifoldWithItsTopology) {
   const auto [name, vertices] = GetParam();
@@ -29,32 +37,12 @@ TEST_P(DifficultShape, IsClosedAndTwoManifoldWithItsTopology) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Gallery, DifficultShape,
-                         testing::Values(Difficult{"thin-torus", 300}, Difficult{"thin-plate", 1000},
-                                         Difficult{"octic", 300}, Difficult{"menger-2", 500}, Difficult{"klein", 600},
-                                         Difficult{"barth", 800}, Difficult{"trig", 500}, Difficult{"schwarz-p", 800},
-                                         Difficult{"heart", 600}),
+                         ::testing::Values(Difficult{"thin-torus", 300}, Difficult{"thin-plate", 1000},
+                                           Difficult{"octic", 300}, Difficult{"menger-2", 500}, Difficult{"klein", 600},
+                                           Difficult{"barth", 800}, Difficult{"trig", 500}, Difficult{"schwarz-p", 800},
+                                           Difficult{"heart", 600}),
                          [](const auto& of) {
                            std::string name = of.param.name;
-                           std::erase(name, '-');
-                           return name;
-                         });
-
-class EasyShape : public testing::TestWithParam<const char*> {};
-
-TEST_P(EasyShape, MeetsItsCountAtFiveThousandVertices) {
-  const MeshResult result = meshed(gallery_shape(GetParam()), {.vertices = 5000, .quality = Quality::fast});
-  expect_good_mesh(result);
-  EXPECT_NEAR(static_cast<double>(result.mesh.vertices.size()), 5000, 5) << "0.1 %";
-  EXPECT_EQ(result.report.regularization_rounds, 0u) << "nothing here is finer than the grid";
-  for (const GalleryEntry& entry : gallery())
-    if (entry.name == GetParam() && entry.euler) {
-      EXPECT_EQ(result.report.quality.euler, *entry.euler);
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Gallery, EasyShape, testing::Values("sphere", "octic", "tangle", "menger-2"),
-                         [](const auto& of) {
-                           std::string name = of.param;
                            std::erase(name, '-');
                            return name;
                          });

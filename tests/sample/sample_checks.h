@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "sample/morton.h"
@@ -25,6 +27,11 @@ inline Shape solid_of(const Mesh& mesh) {
 inline SampleSet sampled(const Mesh& mesh, std::size_t resolution, unsigned threads = 1) {
   Run run(threads);
   const Shape shape = solid_of(mesh);
+  return sample_shape(shape, make_grid(shape.bounds, resolution), run);
+}
+
+inline SampleSet sampled(const Shape& shape, std::size_t resolution, unsigned threads = 2) {
+  Run run(threads);
   return sample_shape(shape, make_grid(shape.bounds, resolution), run);
 }
 
@@ -158,6 +165,33 @@ inline void expect_same(const SampleSet& a, const SampleSet& b) {
   EXPECT_EQ(a.total_area, b.total_area);
   EXPECT_EQ(a.disagreements, b.disagreements);
   EXPECT_EQ(a.unresolved, b.unresolved);
+}
+
+using Edges = std::map<std::tuple<unsigned, std::size_t, std::size_t, std::size_t>, Vec3>;
+
+inline Edges edges_of(const SampleSet& set) {
+  Edges edges;
+  for (const SampleBlock& b : set.blocks)
+    for (std::size_t i = b.begin; i < b.end; ++i) {
+      const EdgeOf e = edge_of(set, b, i);
+      edges[{e.axis, e.at[0], e.at[1], e.at[2]}] = position(set, b, i);
+    }
+  return edges;
+}
+
+/// The same surface up to rounding: samples on the same edges, no farther apart than so many cells, except few.
+/// @param few  share of the samples
+inline void expect_near(const SampleSet& one, const SampleSet& other, double cells = 1e-3, double few = 0) {
+  const Edges a = edges_of(one), b = edges_of(other);
+  std::size_t shared = 0, apart = 0;
+  for (const auto& [edge, p] : a) {
+    const auto found = b.find(edge);
+    if (found == b.end()) continue;
+    ++shared;
+    apart += norm(p - found->second) > cells * one.grid.spacing;
+  }
+  EXPECT_GE(double(shared), 0.999 * double(std::max(a.size(), b.size())));
+  EXPECT_LE(double(apart), few * double(shared));
 }
 
 }  // namespace evenmesh

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <memory>
 #include <utility>
+#include <variant>
 
 #include "evenmesh/shape.h"
 #include "shape/field.h"
+#include "shape/forms.h"
 
 namespace evenmesh {
 
@@ -42,6 +44,34 @@ template <typename F>
 Shape field_shape(F f, const Box& bounds, bool smooth = true) {
   return {"field", bounds, std::make_shared<const PlainField<F>>(std::move(f), smooth), false};
 }
+
+/// The same, asked for gradients as seldom as can be.
+template <typename F>
+class DearField final : public PlainField<F> {
+ public:
+  using PlainField<F>::PlainField;
+  bool differentiates() const override { return false; }
+};
+
+/// The doubles of an expression one by one.
+inline auto doubles_of(const Shape& shape) {
+  return [exact = std::get<std::shared_ptr<const Field>>(shape.what)](double x, double y, double z) {
+    return exact->evaluate(Vec3{x, y, z}, nullptr);
+  };
+}
+
+/// Expressions without intervals, and such whose gradients are dear.
+inline const testing::Form plain{
+    .name = "plain", .of = [](const Shape& shape, double) { return field_shape(doubles_of(shape), shape.bounds); }};
+inline const testing::Form dear{.name = "dear",
+                                .of =
+                                    [](const Shape& shape, double) {
+                                      using Doubles = decltype(doubles_of(shape));
+                                      Shape made = shape;
+                                      made.what = std::make_shared<const DearField<Doubles>>(doubles_of(shape));
+                                      return made;
+                                    },
+                                .roots = 1e-3};
 
 /// Ball of radius 1 with the interval of its distance.
 class BallField : public Field {

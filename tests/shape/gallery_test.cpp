@@ -7,8 +7,15 @@
 #include "evenmesh/error.h"
 #include "shape/bounds.h"
 #include "shape/fields.h"
+#include "shape/gallery_checks.h"
 
 namespace evenmesh {
+namespace testing {
+
+INSTANTIATE_TEST_SUITE_P(Gallery, GalleryForms, ::testing::Values(on_cpu), name_of_form);
+INSTANTIATE_TEST_SUITE_P(Gallery, GalleryTapes, ::testing::Values(on_cpu), name_of_form);
+
+}  // namespace testing
 namespace {
 
 using testing::parse;
@@ -42,122 +49,6 @@ TEST(Gallery, SuggestsNames) {
   EXPECT_NE(message("octik").find("did you mean octic?"), std::string::npos);
   EXPECT_NE(message("mandelbulb").find("mandelbulb-7 or mandelbulb-8"), std::string::npos);
   EXPECT_NE(message("quux").find("sphere, torus"), std::string::npos);
-}
-
-/// Every solid lies within its box: the outer layer of a grid around it is outside.
-TEST(Gallery, SolidsLieWithinTheirBounds) {
-  for (const GalleryEntry& entry : gallery()) {
-    const Shape shape = gallery_shape(entry.name);
-    const auto field = testing::field_of(shape);
-    bool found = false;
-    const Points all = random_points(shape.bounds, 20'000, 1);
-    for (const float value : testing::values_at(*field, all)) found = found || value < 0;
-    EXPECT_TRUE(found) << entry.name << " has an inside";
-    for (int side = 0; side < 6; ++side) {
-      Box face = shape.bounds;
-      (side % 2 == 0 ? face.lo : face.hi)[side / 2] = (side % 2 == 0 ? face.hi : face.lo)[side / 2];
-      for (const float value : testing::values_at(*field, random_points(face, 2000, 2)))
-        EXPECT_GE(value, 0) << entry.name << " reaches side " << side;
-    }
-  }
-}
-
-TEST(Gallery, FoundBoundsHoldTheSolid) {
-  for (const GalleryEntry& entry : gallery()) {
-    const Shape shape = gallery_shape(entry.name);
-    const auto field = testing::field_of(shape);
-    const Box box = find_bounds(*field);
-    EXPECT_LT(box.longest_side(), 1.2 * shape.bounds.longest_side()) << entry.name;
-    const Points points = random_points(shape.bounds, 20'000, 3);
-    const std::vector<float> values = testing::values_at(*field, points);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      EXPECT_TRUE(values[i] >= 0 || box.contains(points.at(i))) << entry.name;
-  }
-}
-
-TEST(Gallery, IntervalsEnclose) {
-  Random random(5);
-  for (const GalleryEntry& entry : gallery()) {
-    const Shape shape = gallery_shape(entry.name);
-    const auto field = testing::field_of(shape);
-    int decided = 0;
-    for (int round = 0; round < 60; ++round) {
-      const Box box = testing::random_box(shape.bounds, random);
-      const Interval interval = field->evaluate(box);
-      decided += interval.lo >= 0 || interval.hi < 0 ? 1 : 0;
-      const std::vector<float> values = testing::values_at(*field, random_points(box, 60, random.bits()));
-      for (const float value : values) {
-        EXPECT_GE(value, interval.lo) << entry.name;
-        EXPECT_LE(value, interval.hi) << entry.name;
-      }
-    }
-    EXPECT_GT(decided, 0) << entry.name << ": intervals never prune";
-  }
-}
-
-/// At points near the surface (where it matters) the gradient predicts the value a small step away.
-TEST(Gallery, GradientsMatchDifferences) {
-  for (const GalleryEntry& entry : gallery()) {
-    if (entry.fractal) continue;
-    const Shape shape = gallery_shape(entry.name);
-    const auto field = testing::field_of(shape);
-    const Points points = random_points(shape.bounds, 2000, 7);
-    const testing::Gradients gradients = testing::gradients_at(*field, points);
-    int compared = 0, apart = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      Vec3 difference;
-      const double step = 1e-6;
-      for (int axis = 0; axis < 3; ++axis) {
-        Vec3 above = points.at(i), below = above;
-        above[axis] += step, below[axis] -= step;
-        difference[axis] = (value_at(*field, above) - value_at(*field, below)) / (2 * step);
-      }
-      ++compared;
-      apart += norm(gradients.at(i) - difference) > 1e-3 * (1 + norm(difference)) ? 1 : 0;
-    }
-    EXPECT_LE(apart, compared / 100) << entry.name;
-  }
-}
-
-TEST(Gallery, SharpSolidsHaveFaceNormals) {
-  for (const char* name : {"cube", "thin-plate", "menger-2", "menger-3"}) {
-    const Shape shape = gallery_shape(name);
-    const Points points = random_points(shape.bounds, 1000, 9);
-    const testing::Gradients gradients = testing::gradients_at(*shape.field(), points);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vec3 g = gradients.at(i);
-      EXPECT_NEAR(std::abs(g.x) + std::abs(g.y) + std::abs(g.z), 1, 1e-5) << name;
-      EXPECT_NEAR(norm(g), 1, 1e-5) << name;
-    }
-  }
-}
-
-/// The sponge by its digits: a point is out when two of its ternary digits of one place are 1.
-bool in_sponge(Vec3 p, int level) {
-  for (int a = 0; a < 3; ++a)
-    if (p[a] < 0 || p[a] > 1) return false;
-  for (int l = 0; l < level; ++l) {
-    int middle = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double digit = std::floor(3 * p[a]);
-      middle += digit == 1 ? 1 : 0;
-      p[a] = 3 * p[a] - digit;
-    }
-    if (middle >= 2) return false;
-  }
-  return true;
-}
-
-TEST(Gallery, SpongesAreSponges) {
-  for (const int level : {2, 3}) {
-    const Shape shape = gallery_shape("menger-" + std::to_string(level));
-    const Points points = random_points(shape.bounds, 20'000, 11);
-    const std::vector<float> values = testing::values_at(*shape.field(), points);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (std::abs(values[i]) < 1e-6) continue;
-      EXPECT_EQ(values[i] < 0, in_sponge(points.at(i), level));
-    }
-  }
 }
 
 /// Fractals by their definition, in double precision.
@@ -211,24 +102,6 @@ TEST(Gallery, FractalsAreContinuousOutside) {
     for (std::size_t i = 1; i < values.size(); ++i)
       EXPECT_LT(std::abs(values[i] - values[i - 1]), 2e-3 + 0.05 * std::abs(values[i])) << name << " " << i;
   }
-}
-
-TEST(Bounds, FindsSolidsWhereverTheyAre) {
-  const auto check = [](const char* formula, const Box& expected) {
-    const Box box = find_bounds(*parse(formula));
-    for (int axis = 0; axis < 3; ++axis) {
-      const double side = expected.hi[axis] - expected.lo[axis];
-      EXPECT_NEAR(box.lo[axis], expected.lo[axis], 0.15 * side) << formula;
-      EXPECT_NEAR(box.hi[axis], expected.hi[axis], 0.15 * side) << formula;
-      EXPECT_LE(box.lo[axis], expected.lo[axis]) << formula;
-      EXPECT_GE(box.hi[axis], expected.hi[axis]) << formula;
-    }
-  };
-  check("r - 1", {{-1, -1, -1}, {1, 1, 1}});
-  check("x^2+y^2+z^2 = 1e-6", {{-1e-3, -1e-3, -1e-3}, {1e-3, 1e-3, 1e-3}});
-  check("(x-1000)^2+y^2+z^2-1", {{999, -1, -1}, {1001, 1, 1}});
-  check("x^2/10000+y^2+z^2-1", {{-100, -1, -1}, {100, 1, 1}});
-  check("0.5 - exp(-x^2-y^2-z^2)", {{-0.8325, -0.8325, -0.8325}, {0.8325, 0.8325, 0.8325}});
 }
 
 TEST(Bounds, SaysWhyThereAreNone) {

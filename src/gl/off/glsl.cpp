@@ -2,23 +2,16 @@
 
 #include "evenmesh/glsl.h"
 
-#include "evenmesh/error.h"
+#include "gl/off/refuse.h"
 
 namespace evenmesh {
-namespace {
-
-[[noreturn]] void refuse() {
-  throw NotAvailable("this build has no OpenGL: configure with -DEVENMESH_GL=ON");
-}
-
-}  // namespace
 
 Shape shape_from_glsl(std::string, const GlslOptions&, std::string) {
-  refuse();
+  gl::refuse();
 }
 
 Shape on_gl(const Shape&, const std::string&) {
-  refuse();
+  gl::refuse();
 }
 
 bool runs_on_gl(const Shape&) {
@@ -26,7 +19,7 @@ bool runs_on_gl(const Shape&) {
 }
 
 std::string gl_renderer(const std::string&) {
-  refuse();
+  gl::refuse();
 }
 
 bool gl_stuck() {

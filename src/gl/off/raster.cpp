@@ -1,11 +1,11 @@
 #include "evenmesh/raster.h"
 
-#include "evenmesh/error.h"
+#include "gl/off/refuse.h"
 
 namespace evenmesh {
 
 Shape shape_from_raster(const RasterOptions&, std::string) {
-  throw NotAvailable("this build has no OpenGL: configure with -DEVENMESH_GL=ON");
+  gl::refuse();
 }
 
 }  // namespace evenmesh

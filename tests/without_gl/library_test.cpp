@@ -1,16 +1,15 @@
-/// Without OpenGL, everything else works, and shaders are refused by name.
-
-#include "evenmesh/glsl.h"
+/// A library built without OpenGL refuses shaders by name.
 
 #include <gtest/gtest.h>
 
 #include "evenmesh/error.h"
+#include "evenmesh/glsl.h"
 #include "evenmesh/raster.h"
 
 namespace evenmesh {
 namespace {
 
-TEST(GlslOff, IsRefused) {
+TEST(WithoutGl, TheLibraryRefusesShaders) {
   EXPECT_THROW(shape_from_glsl("float map(vec3 p) { return p.x; }"), NotAvailable);
   EXPECT_THROW(shape_from_raster({}), NotAvailable);
   EXPECT_THROW(gl_renderer(), NotAvailable);
