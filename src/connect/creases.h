@@ -9,6 +9,9 @@
 
 namespace evenmesh {
 
+/// How far a sharp edge may lie from the chords that follow it, in edge lengths.
+inline constexpr double crease_deviation = 0.08;
+
 /// A sharp edge from one corner to another, or to itself.
 struct CreaseChain {
   static constexpr std::uint32_t none = 0xffffffffu;

@@ -262,8 +262,8 @@ class Job {
     for (const Triangle& t : cells.triangles) mesh.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
 
     separate(mesh);
-    hold_creases(mesh, cells);
     edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
+    hold_creases(mesh, cells);
     if (options_.placement != Placement::centroid && !options_.wrap) {
       projector_ = projector();
       if (!cells.balls.balls().empty())
@@ -304,6 +304,7 @@ class Job {
     }
     std::sort(holds_.edges.begin(), holds_.edges.end());
     holds_.creases = std::move(cells.creases);
+    holds_.most_bulge = crease_deviation * edge_;
   }
 
   /// Open surfaces and fragments: vertices in which several fans of triangles meet are split, and the rim is marked.

@@ -14,10 +14,10 @@
 namespace evenmesh {
 namespace {
 
-SampleSet sampled_expression(const std::string& expression, double half) {
+SampleSet sampled_expression(const std::string& expression, double half, std::size_t resolution = 64) {
   Run run(2);
   const Shape shape = shape_from_expression(expression, {}, {{-half, -half, -half}, {half, half, half}});
-  return sample_shape(shape, make_grid(shape.bounds, 64), run);
+  return sample_shape(shape, make_grid(shape.bounds, resolution), run);
 }
 
 Creases creases_of(const SampleSet& samples, double edge, unsigned threads = 2) {
@@ -98,6 +98,30 @@ TEST(CreaseSeeds, AreEvenlySpacedAndNeighboursInTheDual) {
   for (const Triangle& t : complex.triangles)
     for (int c = 0; c < 3; ++c) edges.insert(std::minmax(t[c], t[(c + 1) % 3]));
   for (const auto& [a, b] : seeds.edges) EXPECT_TRUE(edges.contains(std::minmax(a, b))) << a << " – " << b;
+}
+
+TEST(CreaseSeeds, AreDenserWhereTheirChordsWouldLeaveTheCrease) {
+  // A slab with rounded corners whose radius is two thirds of an edge.
+  const double radius = 0.1, edge = 0.15, straight = 4 * 1.8, round = 2 * std::numbers::pi * radius;
+  const SampleSet samples = sampled_expression(
+      "max(sqrt(max(abs(x)-0.9,0)^2 + max(abs(y)-0.9,0)^2) + min(max(abs(x),abs(y))-0.9,0) - 0.1, abs(z)-0.3)", 1.1,
+      160);
+  const Creases creases = creases_of(samples, edge);
+  const CreaseSeeds seeds = place_crease_seeds(creases, edge);
+  ASSERT_EQ(creases.chains.size(), 2u);
+  for (const CreaseChain& chain : creases.chains) {
+    EXPECT_EQ(chain.from, CreaseChain::none);
+    for (const Vec3& p : chain.points) {
+      double nearest = 1;
+      for (const auto& [a, b] : seeds.edges) {
+        const Vec3 along = seeds.places[b] - seeds.places[a], from = p - seeds.places[a];
+        const double share = std::clamp(dot(from, along) / squared_norm(along), 0.0, 1.0);
+        nearest = std::min(nearest, norm(from - share * along));
+      }
+      EXPECT_LE(nearest, crease_deviation * edge);
+    }
+  }
+  EXPECT_LT(double(seeds.places.size()), 2 * (1.2 * straight + 2 * round) / edge) << "but not along the straight sides";
 }
 
 }  // namespace
