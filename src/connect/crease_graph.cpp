@@ -140,7 +140,10 @@ CreaseGraph find_crease_graph(const SampleSet& samples, double sharp, double wea
   CreaseGraph graph;
   std::vector<HalfLink> halves;
   for (BrickNodes& found : of_brick) {
-    if (found.rough()) continue;
+    if (found.rough()) {
+      graph.nodes.push_back(found.nodes.front());
+      continue;
+    }
     const auto first = static_cast<std::uint32_t>(graph.nodes.size());
     graph.nodes.insert(graph.nodes.end(), found.nodes.begin(), found.nodes.end());
     for (const HalfLink& link : found.links) halves.push_back({link.key, first + link.node, link.sharp});

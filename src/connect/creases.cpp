@@ -8,6 +8,7 @@
 #include "connect/crease_crowding.h"
 #include "connect/crease_graph.h"
 #include "connect/crease_seeds.h"
+#include "connect/tips.h"
 #include "connect/union_find.h"
 
 namespace evenmesh {
@@ -481,7 +482,9 @@ Creases find_creases(const SampleSet& samples, double angle, double edge, Run& r
   network.set_origin(samples.grid.origin);
   network.clean();
   const Creases all = Chains(edge, samples.grid.spacing).make(network);
-  return without_crowded(all, crowded_distance * edge);
+  Creases creases = without_crowded(all, crowded_distance * edge);
+  creases.tips = find_tips(samples, graph.nodes, creases, angle, edge, run);
+  return creases;
 }
 
 }  // namespace evenmesh

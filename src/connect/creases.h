@@ -26,6 +26,7 @@ struct CreaseChain {
 struct Creases {
   std::vector<Vec3> corners;
   std::vector<CreaseChain> chains;
+  std::vector<Vec3> tips;  ///< of cones and the like: points where the normal turns and no chain ends
 };
 
 /// Finds the edges across which the normal turns by more than `angle` degrees.

@@ -68,6 +68,20 @@ TEST(Creases, OfAPrismMeetAtItsCorners) {
   EXPECT_EQ(creases.chains.size(), 9u);
 }
 
+TEST(Creases, TipsOfConesAreWhereTheyComeToAPoint) {
+  for (const auto& [slope, resolution] : {std::pair{0.3, 128u}, {0.5, 101u}, {0.6, 128u}, {0.6, 140u}, {1.0, 128u}}) {
+    const std::string cone = "max(sqrt(x^2+y^2) - " + std::to_string(slope) + "*(0.7-z), -z-0.8)";
+    const Creases creases = creases_of(sampled_expression(cone, 1.6, resolution), 0.3);
+    EXPECT_EQ(creases.chains.size(), 1u);
+    ASSERT_EQ(creases.tips.size(), 1u) << slope;
+    EXPECT_LT(norm(creases.tips[0] - Vec3{0, 0, 0.7}), 1e-3) << slope;
+  }
+  // The same cut off, and rounded off; and a corner of creases.
+  for (const char* none : {"max(sqrt(x^2+y^2) - 0.6*(0.7-z), abs(z)-0.4)", "sqrt(x^2+y^2+0.03) - 0.6*(0.7-z)",
+                           "max(x+y+z, x-y, y-z) - 0.5"})
+    EXPECT_TRUE(creases_of(sampled_expression(none, 1.6, 128), 0.3).tips.empty()) << none;
+}
+
 TEST(Creases, AreTheSameForAnyNumberOfThreads) {
   const SampleSet samples = sampled_gallery("schwarz-p", 80);
   const Creases one = creases_of(samples, 0.1, 1), two = creases_of(samples, 0.1, 2);

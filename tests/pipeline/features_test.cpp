@@ -79,6 +79,22 @@ TEST(Features, EdgesFollowTightCirclesWithinATenthOfTheirLength) {
   }
 }
 
+TEST(Features, TipsOfConesHaveAVertex) {
+  // Two cones, base to base.
+  const Shape cones =
+      shape_from_expression("sqrt(x^2 + y^2) - 0.7 * (1 - abs(z))", {}, Box{{-1, -1, -1.1}, {1, 1, 1.1}});
+  for (const std::size_t vertices : {300u, 2000u}) {
+    const MeshResult result = meshed(cones, {.vertices = vertices});
+    expect_good_mesh(result);
+    expect_count(result, vertices);
+    for (const Vec3& tip : {Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
+      double nearest = 1;
+      for (const Vec3& v : result.mesh.vertices) nearest = std::min(nearest, norm(v - tip));
+      EXPECT_LT(nearest, 0.01 * result.report.quality.edge_length_avg) << vertices;
+    }
+  }
+}
+
 TEST(Features, SmoothShapesDoNotChange) {
   for (const char* name : {"torus", "rounded-box", "tangle"}) {
     const MeshOptions off{.vertices = 700, .crease_angle = std::nullopt}, on{.vertices = 700};
