@@ -19,7 +19,8 @@ class PlaneQuadric {
   /// The point nearest to the mean of the p's among those where the planes meet as well as they can. Directions in
   /// which they hardly differ do not count, but the `least` strongest ones do; at most `most` do.
   Vec3 minimum(int least, int most) const;
-  bool empty() const { return count_ == 0; }
+  /// In how many directions the planes differ by more than hardly.
+  int rank() const;
 
  private:
   double count_ = 0;

@@ -27,7 +27,7 @@ class TipFinder {
     for (int step = 0; step < 3; ++step) {
       PlaneQuadric planes;
       each_around(p, [&](const Vec3& x, const Vec3& n) { planes.add(x - p, n); });
-      if (planes.empty()) return {};
+      if (planes.rank() < 3) return {};  // a crease at most, or nothing
       const Vec3 move = planes.minimum(3, 3);
       if (!(norm(move) < around * edge_)) return {};
       p += move;

@@ -7,6 +7,7 @@
 #include "connect/connect_testing.h"
 #include "connect/crease_crowding.h"
 #include "connect/crease_seeds.h"
+#include "connect/tips.h"
 #include "cvt/starts.h"
 #include "geometry/primitives.h"
 #include "shape/expression_field.h"
@@ -80,6 +81,16 @@ TEST(Creases, TipsOfConesAreWhereTheyComeToAPoint) {
   for (const char* none : {"max(sqrt(x^2+y^2) - 0.6*(0.7-z), abs(z)-0.4)", "sqrt(x^2+y^2+0.03) - 0.6*(0.7-z)",
                            "max(x+y+z, x-y, y-z) - 0.5"})
     EXPECT_TRUE(creases_of(sampled_expression(none, 1.6, 128), 0.3).tips.empty()) << none;
+}
+
+TEST(Tips, AreNotAlongCreasesThatNobodyFollows) {
+  evenmesh::Run run(2);
+  const SampleSet samples = sampled_gallery("cube", 64);
+  const CreaseGraph graph = find_crease_graph(samples, std::cos(0.7), std::cos(0.5), run);
+  const std::vector<Vec3> tips = find_tips(samples, graph.nodes, {}, 40, 0.3, run);
+  EXPECT_EQ(tips.size(), 8u);
+  for (const Vec3& tip : tips)
+    for (int a = 0; a < 3; ++a) EXPECT_NEAR(std::abs(tip[a]), 1, 1e-4);
 }
 
 TEST(Creases, AreTheSameForAnyNumberOfThreads) {
