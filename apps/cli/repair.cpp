@@ -53,6 +53,9 @@ int run_repair(RepairArguments a) {
       options.wrap = true, options.method = Method::shell;
       return;
     }
+    std::size_t filled = 0;
+    shape = shape_from_mesh(holes_filled(*shape.mesh(), filled), shape.name);
+    if (talk != Talk::quiet && filled > 0) say("note", fmt::format("{} holes filled", filled));
     options.method = Method::raster;
     options.fill_cavities = hull != "all";
     if (hull == "oriented") shape.winding = Winding::positive;

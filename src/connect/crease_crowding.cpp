@@ -75,6 +75,7 @@ Creases without_crowded(const Creases& creases, double reach) {
 
 Creases without_chains(const Creases& creases, const std::vector<char>& doomed) {
   Creases kept;
+  kept.tips = creases.tips;
   std::vector<Index> now(creases.corners.size(), none);
   const auto corner = [&](Index c) {
     if (c == none) return none;

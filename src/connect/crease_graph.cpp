@@ -20,14 +20,28 @@ void PlaneQuadric::add(const PlaneQuadric& other) {
   for (std::size_t i = 0; i < 6; ++i) a_[i] += other.a_[i];
 }
 
-Vec3 PlaneQuadric::minimum(int least, int most) const {
-  constexpr double smallest_share = 0.01;  // of the largest eigenvalue
-  Eigen::Matrix3d a;
-  a << a_[0], a_[1], a_[2], a_[1], a_[3], a_[4], a_[2], a_[4], a_[5];
-  const Vec3 m = mean();
-  const Eigen::Vector3d at(m.x, m.y, m.z), residual = Eigen::Vector3d(b_.x, b_.y, b_.z) - a * at;
+namespace {
+
+constexpr double smallest_share = 0.01;  // of the largest eigenvalue
+
+Eigen::Matrix3d symmetric(const std::array<double, 6>& a) {
+  Eigen::Matrix3d m;
+  m << a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5];
+  return m;
+}
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(const Eigen::Matrix3d& a) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(a);
+  return solver;
+}
+
+}  // namespace
+
+Vec3 PlaneQuadric::minimum(int least, int most) const {
+  const Eigen::Matrix3d a = symmetric(a_);
+  const Vec3 m = mean();
+  const Eigen::Vector3d at(m.x, m.y, m.z), residual = Eigen::Vector3d(b_.x, b_.y, b_.z) - a * at;
+  const auto solver = solved(a);
   const auto& values = solver.eigenvalues();
   Eigen::Vector3d x = at;
   for (int rank = 0; rank < most; ++rank) {
@@ -36,6 +50,11 @@ Vec3 PlaneQuadric::minimum(int least, int most) const {
     x += solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(residual) / values[i]);
   }
   return {x.x(), x.y(), x.z()};
+}
+
+int PlaneQuadric::rank() const {
+  const Eigen::Vector3d values = solved(symmetric(a_)).eigenvalues();
+  return static_cast<int>((values.array() > smallest_share * values[2]).count());
 }
 
 namespace {
@@ -140,7 +159,10 @@ CreaseGraph find_crease_graph(const SampleSet& samples, double sharp, double wea
   CreaseGraph graph;
   std::vector<HalfLink> halves;
   for (BrickNodes& found : of_brick) {
-    if (found.rough()) continue;
+    if (found.rough()) {
+      graph.nodes.push_back(found.nodes.front());
+      continue;
+    }
     const auto first = static_cast<std::uint32_t>(graph.nodes.size());
     graph.nodes.insert(graph.nodes.end(), found.nodes.begin(), found.nodes.end());
     for (const HalfLink& link : found.links) halves.push_back({link.key, first + link.node, link.sharp});

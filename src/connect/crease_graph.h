@@ -19,6 +19,8 @@ class PlaneQuadric {
   /// The point nearest to the mean of the p's among those where the planes meet as well as they can. Directions in
   /// which they hardly differ do not count, but the `least` strongest ones do; at most `most` do.
   Vec3 minimum(int least, int most) const;
+  /// In how many directions the planes differ by more than hardly.
+  int rank() const;
 
  private:
   double count_ = 0;
@@ -33,6 +35,7 @@ struct CreaseNode {
 };
 
 /// One node for every loop of crossings in a cube that a crease passes through, one link for every face between two.
+/// Where most of a brick is creased, as on fractals or at the tip of a needle, there is one node and no link.
 struct CreaseGraph {
   std::vector<CreaseNode> nodes;
   std::vector<std::array<std::uint32_t, 2>> links;

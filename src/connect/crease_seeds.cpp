@@ -12,8 +12,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr double held_distance = 1.5;    ///< grid cells
-constexpr double most_deviation = 0.08;  ///< of a chord from its chain, in edges
+constexpr double held_distance = 1.5;  ///< grid cells
 
 /// A piece of a chain, between its points `point` and `point` + 1.
 struct Segment {
@@ -83,9 +82,10 @@ double deviation(const CreaseChain& chain, std::uint32_t n) {
 
 /// Into how many pieces a chain is cut: of the length `edge`, or a little less where it is bent so much that chords
 /// would leave it.
-std::uint32_t segments_of(const CreaseChain& chain, double edge, std::uint32_t least) {
+std::uint32_t segments_of(const CreaseChain& chain, double edge) {
+  const std::uint32_t least = chain.from == chain.to ? 3 : 1;
   auto n = std::max(least, static_cast<std::uint32_t>(std::lround(chain.length() / edge)));
-  for (const std::uint32_t most = n + (n + 1) / 2; n < most && deviation(chain, n) > most_deviation * edge;) ++n;
+  for (const std::uint32_t most = n + (n + 1) / 2; n < most && deviation(chain, n) > crease_deviation * edge;) ++n;
   return n;
 }
 
@@ -95,14 +95,18 @@ std::uint32_t CreaseSeeds::chain_of(std::size_t place) const {
   return static_cast<std::uint32_t>(std::upper_bound(first.begin(), first.end(), place) - first.begin() - 1);
 }
 
+bool follows(const CreaseChain& chain, double edge) {
+  return deviation(chain, segments_of(chain, edge)) <= crease_deviation * edge;
+}
+
 CreaseSeeds place_crease_seeds(const Creases& creases, double edge) {
   CreaseSeeds seeds;
   seeds.places = creases.corners, seeds.corners = creases.corners.size();
   std::set<std::pair<std::uint32_t, std::uint32_t>> joined;  // corners with an edge between them
   for (std::uint32_t c = 0; c < creases.chains.size(); ++c) {
     const CreaseChain& chain = creases.chains[c];
-    const bool closed = chain.from == CreaseChain::none, loop = chain.from == chain.to;
-    std::uint32_t n = segments_of(chain, edge, loop ? 3 : 1);
+    const bool closed = chain.from == CreaseChain::none;
+    std::uint32_t n = segments_of(chain, edge);
     if (n == 1 && !joined.insert(std::minmax(chain.from, chain.to)).second) n = 2;
     const auto first = static_cast<std::uint32_t>(seeds.places.size());
     seeds.first.push_back(first), seeds.segments.push_back(n);

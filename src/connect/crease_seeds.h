@@ -20,6 +20,9 @@ struct CreaseSeeds {
   std::uint32_t chain_of(std::size_t place) const;
 };
 
+/// Whether the seeds that place_crease_seeds() would put on a chain follow it: chords within `crease_deviation`.
+bool follows(const CreaseChain& chain, double edge);
+
 /// @param edge  wanted distance between neighbours, model units; chains are cut into equal pieces of about that
 CreaseSeeds place_crease_seeds(const Creases& creases, double edge);
 

@@ -7,6 +7,8 @@
 
 #include "connect/crease_crowding.h"
 #include "connect/crease_graph.h"
+#include "connect/crease_seeds.h"
+#include "connect/tips.h"
 #include "connect/union_find.h"
 
 namespace evenmesh {
@@ -20,6 +22,7 @@ constexpr double spur_length = 0.7;        ///< of a branch that ends nowhere, i
 constexpr double corner_distance = 0.2;    ///< corners nearer than this, in edges, are one
 constexpr double crowded_distance = 0.33;  ///< of chains side by side, in edges
 constexpr double weak_angle = 0.65;        ///< of the angle asked for: down to this creases go on that fade
+constexpr double most_tightened = 1.5;     ///< how much denser vertices are there than elsewhere, at most
 constexpr double sharp_turn = 40;          ///< degrees within a few grid cells: a corner
 
 /// A path of nodes between two junctions, or a closed one.
@@ -311,6 +314,14 @@ class Polyline {
     return points_[i - 1].place + std::clamp(share, 0.0, 1.0) * (points_[i].place - points_[i - 1].place);
   }
 
+  /// Angle by which the direction changes around a point, between chords of length `reach`, or what is there.
+  double turn(std::size_t i, double reach) const {
+    const auto clamped = [&](double s) { return closed_ ? s : std::clamp(s, 0.0, length()); };
+    const double s = up_to_[i];
+    const Vec3 before = points_[i].place - at(clamped(s - reach)), after = at(clamped(s + reach)) - points_[i].place;
+    return std::atan2(norm(cross(before, after)), dot(before, after));
+  }
+
   /// Indices of points where the direction changes by more than a sharp turn within `reach`, ascending.
   std::vector<std::size_t> turns(double reach) const {
     const double least = std::cos(sharp_turn * std::numbers::pi / 180);
@@ -424,7 +435,16 @@ class Chains {
       add_chain(clear_of_ends(piece(turns[k], turns[k + 1])), corners[k], corners[k + 1]);
   }
 
-  void add_chain(const std::vector<Point>& points, Index from, Index to) {
+  void add_chain(std::vector<Point> points, Index from, Index to) {
+    CreaseChain chain = chain_of(points, from, to);
+    if (!(chain.points.size() > 1 && chain.length() > 0)) return;
+    if (!follows(chain, edge_)) {
+      tighten(points, from == none);
+      chain = chain_of(points, from, to);
+    }
+    creases_.chains.push_back(std::move(chain));
+  }
+  static CreaseChain chain_of(const std::vector<Point>& points, Index from, Index to) {
     CreaseChain chain;
     chain.from = from, chain.to = to;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -433,7 +453,18 @@ class Chains {
       chain.points.push_back(points[i].place);
       chain.arc.push_back((i == 0 ? 0 : chain.arc.back()) + step);
     }
-    if (chain.points.size() > 1 && chain.length() > 0) creases_.chains.push_back(std::move(chain));
+    return chain;
+  }
+
+  /// Quickens the pace in strongly curved parts so that chords do not leave them by more than `crease_deviation`.
+  void tighten(std::vector<Point>& points, bool closed) const {
+    const Polyline line(points, closed);
+    const double reach = std::max(2.5 * spacing_, 0.3 * edge_);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double curvature = line.turn(i, reach) / reach;
+      const double chord = std::sqrt(8 * crease_deviation * edge_ / std::max(curvature, 1e-9 / edge_));
+      points[i].pace *= std::clamp(edge_ / chord, 1.0, most_tightened);
+    }
   }
 
   double edge_, spacing_;
@@ -451,7 +482,9 @@ Creases find_creases(const SampleSet& samples, double angle, double edge, Run& r
   network.set_origin(samples.grid.origin);
   network.clean();
   const Creases all = Chains(edge, samples.grid.spacing).make(network);
-  return without_crowded(all, crowded_distance * edge);
+  Creases creases = without_crowded(all, crowded_distance * edge);
+  creases.tips = find_tips(samples, graph.nodes, creases, angle, edge, run);
+  return creases;
 }
 
 }  // namespace evenmesh

@@ -9,6 +9,9 @@
 
 namespace evenmesh {
 
+/// How far a sharp edge may lie from the chords that follow it, in edge lengths.
+inline constexpr double crease_deviation = 0.08;
+
 /// A sharp edge from one corner to another, or to itself.
 struct CreaseChain {
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -23,6 +26,7 @@ struct CreaseChain {
 struct Creases {
   std::vector<Vec3> corners;
   std::vector<CreaseChain> chains;
+  std::vector<Vec3> tips;  ///< of cones and the like: points where the normal turns and no chain ends
 };
 
 /// Finds the edges across which the normal turns by more than `angle` degrees.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include "connect/brick_union.h"
 #include "connect/dual_polygons.h"
@@ -137,11 +139,13 @@ struct Piece {
   Index root = 0, label = 0;
   double area = 0;
   Vec3 moment;
+  double from_seed = std::numeric_limits<double>::infinity();  ///< squared, of the nearest sample; held labels only
 };
 
-/// All pieces of the labels that have several, by label, the largest first.
+/// All pieces of the labels that have several, by label; first the one that keeps it: the largest, or where the seed is
+/// held the nearest.
 std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels, Complex& complex,
-                                          const std::vector<Index>& piece_count) {
+                                          const std::vector<Index>& piece_count, std::span<const Vec3> held) {
   auto& parent = complex.parent();
   std::vector<Piece> pieces;
   std::vector<std::pair<Index, Index>> piece_of_root;  // (root, index into pieces), ascending
@@ -158,17 +162,19 @@ std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::v
       const Index root = find_root(parent, i);
       Piece& piece =
           pieces[std::lower_bound(piece_of_root.begin(), piece_of_root.end(), std::pair{root, Index{0}})->second];
+      const Vec3 place = center + Vec3{samples.x[i], samples.y[i], samples.z[i]};
       piece.area += samples.area[i];
-      piece.moment += double(samples.area[i]) * (center + Vec3{samples.x[i], samples.y[i], samples.z[i]});
+      piece.moment += double(samples.area[i]) * place;
+      if (labels[i] < held.size()) piece.from_seed = std::min(piece.from_seed, squared_norm(place - held[labels[i]]));
     }
   }
   std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
-    return a.label != b.label ? a.label < b.label : a.area != b.area ? a.area > b.area : a.root < b.root;
+    return std::tuple(a.label, a.from_seed, -a.area, a.root) < std::tuple(b.label, b.from_seed, -b.area, b.root);
   });
   return pieces;
 }
 
-/// Gives every label's largest piece its label, other pieces a new one, tiny pieces that of the neighbour with the
+/// Gives every label's first piece its label, other pieces a new one, tiny pieces that of the neighbour with the
 /// longest border.
 class Splitter {
  public:
@@ -176,16 +182,16 @@ class Splitter {
       : samples_(samples), labels_(labels), complex_(complex), result_(result) {}
 
   /// @param piece_count  by given label
-  void split(const std::vector<Index>& piece_count, double mean_cell) {
+  void split(const std::vector<Index>& piece_count, double mean_cell, std::span<const Vec3> held) {
     const std::size_t given_labels = piece_count.size();
-    pieces_ = pieces_of_split_labels(samples_, labels_, complex_, piece_count);
+    pieces_ = pieces_of_split_labels(samples_, labels_, complex_, piece_count, held);
     result_.labels = given_labels;
     if (pieces_.empty()) return;
     std::vector<std::pair<Index, Index>> label_of_root, tiny;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
       const Piece& piece = pieces_[p];
-      const bool largest = p == 0 || pieces_[p - 1].label != piece.label;
-      if (largest) continue;
+      const bool first = p == 0 || pieces_[p - 1].label != piece.label;
+      if (first) continue;
       if (piece.area < tiny_piece * mean_cell) {
         tiny.push_back({piece.root, static_cast<Index>(p)});
         continue;
@@ -281,14 +287,15 @@ class Splitter {
 }  // namespace
 
 LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
-                            Run& run) {
+                            Run& run, std::size_t held) {
   LabelComplex result;
   Complex complex(samples, labels, seeds.size(), run);
   complex.link();
   result.surface_euler = complex.surface_euler();
   std::vector<Index> piece_count(seeds.size(), 0);
   for (const Index root : complex.roots()) ++piece_count[labels[root]];
-  Splitter(samples, labels, complex, result).split(piece_count, samples.total_area / static_cast<double>(seeds.size()));
+  Splitter(samples, labels, complex, result)
+      .split(piece_count, samples.total_area / static_cast<double>(seeds.size()), seeds.first(held));
 
   std::vector<Vec3> positions(seeds.begin(), seeds.end());
   for (const CellPiece& piece : result.pieces) positions.push_back(piece.centroid);

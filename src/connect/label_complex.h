@@ -14,7 +14,7 @@ namespace evenmesh {
 /// Of samples that do not belong to the surface to be meshed: it ends there.
 inline constexpr std::uint32_t no_label = 0xffffffffu;
 
-/// A connected piece of a cell that is not the cell's largest.
+/// A connected piece of a cell that is not the one which keeps the label.
 struct CellPiece {
   std::uint32_t label = 0;      ///< the cell it comes from
   std::uint32_t new_label = 0;  ///< label it now has: a new one, or that of a neighbour when it is tiny
@@ -39,12 +39,13 @@ struct LabelComplex {
 ///
 /// Each crossing of a grid edge is one quad of the closed surface between inside and outside points; quads around a
 /// grid cube's loop of crossings meet in a corner. Three or more labels around a corner make a dual polygon. A label
-/// whose quads are not connected is split; a piece smaller than a tenth of a mean cell goes to a neighbour.
+/// whose quads are not connected is split, and its largest piece keeps it, or the one nearest to the seed for the first
+/// `held` labels, whose seeds do not move; a piece smaller than a tenth of a mean cell goes to a neighbour.
 ///
 /// Guarantee: without defects the triangles are a closed, oriented two-manifold with the topology of the sampled solid.
 /// Where samples have no label the surface has a boundary; several fans of triangles may then meet in one vertex there.
 /// Same bits for any number of threads. Cost: about 60 ns per sample and core.
 LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
-                            Run& run);
+                            Run& run, std::size_t held = 0);
 
 }  // namespace evenmesh

@@ -115,7 +115,9 @@ class Cells {
                                    "held: ask for more vertices"});
       creases_ = {}, crease_seeds_ = {};
     }
-    for (const CreaseChain& chain : creases_.chains) report_.crease_length += chain.length();
+    for (const CreaseChain& chain : creases_.chains)
+      for (std::size_t p = 1; p < chain.points.size(); ++p)
+        report_.crease_length += norm(chain.points[p] - chain.points[p - 1]);
     report_.crease_vertices = held();
   }
   std::size_t held() const { return crease_seeds_.places.size(); }
@@ -153,7 +155,7 @@ class Cells {
       }
       if (options_.connect == Connect::flood) flood_labels(samples_, labels_, seeds_, run_);
       if (held() > 0) hold_labels(samples_, creases_, crease_seeds_, labels_, run_);
-      complex_ = connect_labels(samples_, labels_, seeds_, run_);
+      complex_ = connect_labels(samples_, labels_, seeds_, run_, held());
       for (const CellPiece& piece : complex_.pieces) seeds_.push_back(piece.centroid);
     });
   }

@@ -265,8 +265,8 @@ class Job {
     for (const Triangle& t : cells.triangles) mesh.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
 
     separate(mesh);
-    hold_creases(mesh, cells);
     edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
+    hold_creases(mesh, cells);
     if (options_.placement != Placement::centroid && !options_.wrap) {
       projector_ = projector();
       if (!cells.balls.balls().empty())
@@ -297,7 +297,7 @@ class Job {
   /// Vertices of seeds on creases go there, except where a ball has covered the crease.
   void hold_creases(Mesh& mesh, ConnectedCells& cells) {
     const CreaseSeeds& seeds = cells.crease_seeds;
-    if (seeds.places.empty()) return;
+    if (seeds.places.empty() && cells.creases.tips.empty()) return;
     holds_.chain.assign(mesh.vertices.size(), Holds::free);
     for (std::size_t l = 0; l < seeds.places.size(); ++l) {
       const Vec3& place = seeds.places[l];
@@ -310,6 +310,19 @@ class Job {
     }
     std::sort(holds_.edges.begin(), holds_.edges.end());
     holds_.creases = std::move(cells.creases);
+    for (const Vec3& tip : holds_.creases.tips)
+      if (cells.balls.outside(tip) == tip) hold_tip(mesh, tip);
+    holds_.most_bulge = crease_deviation * edge_;
+  }
+
+  /// The nearest vertex goes to the tip of a cone: seeds in balance leave it not far from there.
+  void hold_tip(Mesh& mesh, const Vec3& tip) {
+    constexpr double most_moved = 1;  // edges
+    std::size_t nearest = 0;
+    for (std::size_t v = 1; v < mesh.vertices.size(); ++v)
+      if (squared_norm(mesh.vertices[v] - tip) < squared_norm(mesh.vertices[nearest] - tip)) nearest = v;
+    if (holds_.chain[nearest] != Holds::free || norm(mesh.vertices[nearest] - tip) > most_moved * edge_) return;
+    holds_.chain[nearest] = Holds::corner, mesh.vertices[nearest] = tip;
   }
 
   /// Open surfaces and fragments: vertices in which several fans of triangles meet are split, and the rim is marked.

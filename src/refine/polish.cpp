@@ -23,6 +23,8 @@ bool improve(Mesh& mesh, const VertexRings& rings, const Projector* projector, c
   rings.normals(v, normals);
   const TangentPlane plane(rings.normal(v));
   const double edge = rings.edge_length(v), before = rings.worst_score(v, normals);
+  const bool held = holds.vertex(v);
+  const double bulge = held ? std::max(holds.most_bulge, holds.bulge(mesh, v, rings.neighbours(v))) : 0;
   Vec3 best_position = position;
   double best = before;
   for (const double step : {0.2, 0.1, 0.05, 0.02, 0.01}) {
@@ -30,9 +32,10 @@ bool improve(Mesh& mesh, const VertexRings& rings, const Projector* projector, c
     const Vec3 from = best_position;
     for (int eighth = 0; eighth < 8; ++eighth) {
       const Vec3 trial = from + plane.step(eighth, step * edge);
-      position = holds.vertex(v) ? holds.slide(v, trial) : projector ? projector->project(trial, 0.3 * edge) : trial;
+      position = held ? holds.slide(v, trial) : projector ? projector->project(trial, 0.3 * edge) : trial;
       const double worst = rings.worst_score(v, normals, best);
-      if (worst > best + 1e-6) best = worst, best_position = position;
+      if (worst > best + 1e-6 && !(held && holds.bulge(mesh, v, rings.neighbours(v)) > bulge))
+        best = worst, best_position = position;
     }
   }
   position = best_position;

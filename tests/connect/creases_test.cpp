@@ -7,6 +7,7 @@
 #include "connect/connect_testing.h"
 #include "connect/crease_crowding.h"
 #include "connect/crease_seeds.h"
+#include "connect/tips.h"
 #include "cvt/starts.h"
 #include "geometry/primitives.h"
 #include "shape/expression_field.h"
@@ -14,10 +15,10 @@
 namespace evenmesh {
 namespace {
 
-SampleSet sampled_expression(const std::string& expression, double half) {
+SampleSet sampled_expression(const std::string& expression, double half, std::size_t resolution = 64) {
   Run run(2);
   const Shape shape = shape_from_expression(expression, {}, {{-half, -half, -half}, {half, half, half}});
-  return sample_shape(shape, make_grid(shape.bounds, 64), run);
+  return sample_shape(shape, make_grid(shape.bounds, resolution), run);
 }
 
 Creases creases_of(const SampleSet& samples, double edge, unsigned threads = 2) {
@@ -68,6 +69,30 @@ TEST(Creases, OfAPrismMeetAtItsCorners) {
   EXPECT_EQ(creases.chains.size(), 9u);
 }
 
+TEST(Creases, TipsOfConesAreWhereTheyComeToAPoint) {
+  for (const auto& [slope, resolution] : {std::pair{0.3, 128u}, {0.5, 101u}, {0.6, 128u}, {0.6, 140u}, {1.0, 128u}}) {
+    const std::string cone = "max(sqrt(x^2+y^2) - " + std::to_string(slope) + "*(0.7-z), -z-0.8)";
+    const Creases creases = creases_of(sampled_expression(cone, 1.6, resolution), 0.3);
+    EXPECT_EQ(creases.chains.size(), 1u);
+    ASSERT_EQ(creases.tips.size(), 1u) << slope;
+    EXPECT_LT(norm(creases.tips[0] - Vec3{0, 0, 0.7}), 1e-3) << slope;
+  }
+  // The same cut off, and rounded off; and a corner of creases.
+  for (const char* none : {"max(sqrt(x^2+y^2) - 0.6*(0.7-z), abs(z)-0.4)", "sqrt(x^2+y^2+0.03) - 0.6*(0.7-z)",
+                           "max(x+y+z, x-y, y-z) - 0.5"})
+    EXPECT_TRUE(creases_of(sampled_expression(none, 1.6, 128), 0.3).tips.empty()) << none;
+}
+
+TEST(Tips, AreNotAlongCreasesThatNobodyFollows) {
+  evenmesh::Run run(2);
+  const SampleSet samples = sampled_gallery("cube", 64);
+  const CreaseGraph graph = find_crease_graph(samples, std::cos(0.7), std::cos(0.5), run);
+  const std::vector<Vec3> tips = find_tips(samples, graph.nodes, {}, 40, 0.3, run);
+  EXPECT_EQ(tips.size(), 8u);
+  for (const Vec3& tip : tips)
+    for (int a = 0; a < 3; ++a) EXPECT_NEAR(std::abs(tip[a]), 1, 1e-4);
+}
+
 TEST(Creases, AreTheSameForAnyNumberOfThreads) {
   const SampleSet samples = sampled_gallery("schwarz-p", 80);
   const Creases one = creases_of(samples, 0.1, 1), two = creases_of(samples, 0.1, 2);
@@ -98,6 +123,30 @@ TEST(CreaseSeeds, AreEvenlySpacedAndNeighboursInTheDual) {
   for (const Triangle& t : complex.triangles)
     for (int c = 0; c < 3; ++c) edges.insert(std::minmax(t[c], t[(c + 1) % 3]));
   for (const auto& [a, b] : seeds.edges) EXPECT_TRUE(edges.contains(std::minmax(a, b))) << a << " – " << b;
+}
+
+TEST(CreaseSeeds, AreDenserWhereTheirChordsWouldLeaveTheCrease) {
+  // A slab with rounded corners whose radius is two thirds of an edge.
+  const double radius = 0.1, edge = 0.15, straight = 4 * 1.8, round = 2 * std::numbers::pi * radius;
+  const SampleSet samples = sampled_expression(
+      "max(sqrt(max(abs(x)-0.9,0)^2 + max(abs(y)-0.9,0)^2) + min(max(abs(x),abs(y))-0.9,0) - 0.1, abs(z)-0.3)", 1.1,
+      160);
+  const Creases creases = creases_of(samples, edge);
+  const CreaseSeeds seeds = place_crease_seeds(creases, edge);
+  ASSERT_EQ(creases.chains.size(), 2u);
+  for (const CreaseChain& chain : creases.chains) {
+    EXPECT_EQ(chain.from, CreaseChain::none);
+    for (const Vec3& p : chain.points) {
+      double nearest = 1;
+      for (const auto& [a, b] : seeds.edges) {
+        const Vec3 along = seeds.places[b] - seeds.places[a], from = p - seeds.places[a];
+        const double share = std::clamp(dot(from, along) / squared_norm(along), 0.0, 1.0);
+        nearest = std::min(nearest, norm(from - share * along));
+      }
+      EXPECT_LE(nearest, crease_deviation * edge);
+    }
+  }
+  EXPECT_LT(double(seeds.places.size()), 2 * (1.2 * straight + 2 * round) / edge) << "but not along the straight sides";
 }
 
 }  // namespace

@@ -218,5 +218,30 @@ TEST(LabelComplex, SameBitsForAnyNumberOfThreads) {
   }
 }
 
+TEST(LabelComplex, HeldSeedsKeepThePieceTheyLieOn) {
+  // A thin plate with one cell that has a small piece above and a large one below.
+  evenmesh::Run run(2);
+  const Shape plate =
+      shape_from_expression("max(abs(x), abs(y), 10*abs(z)) - 1", {}, Box{{-1.1, -1.1, -1.1}, {1.1, 1.1, 1.1}});
+  const SampleSet samples = sample_shape(plate, make_grid(plate.bounds, 64), run);
+  const std::vector<Vec3> seeds{{0, 0, 0.1}, {0.7, 0, 0}, {-0.7, 0, 0}, {0, 0.7, 0}, {0, -0.7, 0}};
+  const auto places = positions_of(samples);
+  const auto above = [&](std::size_t s) { return places[s].z > 0 && norm(places[s] - seeds[0]) < 0.25; };
+  std::vector<std::uint32_t> labels = nearest_labels(samples, seeds);
+  for (std::size_t s = 0; s < labels.size(); ++s) {
+    const bool below = places[s].z < 0 && std::hypot(places[s].x, places[s].y) < 0.5;
+    if (above(s) || below)
+      labels[s] = 0;
+    else if (labels[s] == 0)
+      labels[s] = places[s].x > 0 ? 1 : 2;
+  }
+  for (const std::size_t held : {0u, 1u}) {
+    std::vector<std::uint32_t> now = labels;
+    const LabelComplex complex = connect_labels(samples, now, seeds, run, held);
+    ASSERT_FALSE(complex.pieces.empty());
+    for (std::size_t s = 0; s < now.size(); ++s) EXPECT_TRUE(!above(s) || (now[s] == 0) == (held == 1));
+  }
+}
+
 }  // namespace
 }  // namespace evenmesh

@@ -49,6 +49,52 @@ TEST(Features, BooleanEdgesAreKept) {
   EXPECT_NEAR(result.report.crease_length, 2 * std::numbers::pi * (2 + 2 * std::sqrt(0.5)), 0.05);
 }
 
+/// Distance from a point to the nearest edge of the mesh.
+double from_edges(const Mesh& mesh, const Vec3& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3 a = mesh.vertices[t[c]], along = mesh.vertices[t[(c + 1) % 3]] - a;
+      const double share = std::clamp(dot(p - a, along) / squared_norm(along), 0.0, 1.0);
+      nearest = std::min(nearest, norm(p - a - share * along));
+    }
+  return nearest;
+}
+
+TEST(Features, EdgesFollowTightCirclesWithinATenthOfTheirLength) {
+  const Shape ring = shape_from_expression("max(x^2 + y^2 - 1, 0.16 - x^2 - y^2, abs(z) - 0.5)", {},
+                                           Box{{-1.1, -1.1, -0.6}, {1.1, 1.1, 0.6}});
+  for (const std::size_t vertices : {150u, 250u, 400u, 700u}) {
+    const MeshResult result = meshed(ring, {.vertices = vertices});
+    expect_good_mesh(result);
+    double farthest = 0;
+    for (const double radius : {0.4, 1.0})
+      for (int degree = 0; degree < 360; degree += 3) {
+        const double angle = degree * std::numbers::pi / 180;
+        for (const double z : {-0.5, 0.5})
+          farthest =
+              std::max(farthest, from_edges(result.mesh, {radius * std::cos(angle), radius * std::sin(angle), z}));
+      }
+    EXPECT_LT(farthest, 0.1 * result.report.quality.edge_length_avg) << vertices;
+  }
+}
+
+TEST(Features, TipsOfConesHaveAVertex) {
+  // Two cones, base to base.
+  const Shape cones =
+      shape_from_expression("sqrt(x^2 + y^2) - 0.7 * (1 - abs(z))", {}, Box{{-1, -1, -1.1}, {1, 1, 1.1}});
+  for (const std::size_t vertices : {300u, 2000u}) {
+    const MeshResult result = meshed(cones, {.vertices = vertices});
+    expect_good_mesh(result);
+    expect_count(result, vertices);
+    for (const Vec3& tip : {Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
+      double nearest = 1;
+      for (const Vec3& v : result.mesh.vertices) nearest = std::min(nearest, norm(v - tip));
+      EXPECT_LT(nearest, 0.01 * result.report.quality.edge_length_avg) << vertices;
+    }
+  }
+}
+
 TEST(Features, SmoothShapesDoNotChange) {
   for (const char* name : {"torus", "rounded-box", "tangle"}) {
     const MeshOptions off{.vertices = 700, .crease_angle = std::nullopt}, on{.vertices = 700};

@@ -58,5 +58,21 @@ TEST(Repair, HolesAreClosed) {
   EXPECT_NEAR(result.report.quality.volume, 2 * std::numbers::pi * std::numbers::pi * 0.16, 0.12);
 }
 
+TEST(Repair, FilledHolesLeaveNothingToVoteOn) {
+  Mesh holed = make_icosphere(5);
+  for (const Vec3& hole : {Vec3{0, 0, -1}, Vec3{0.6, 0, -0.8}, Vec3{0, 0.8, 0.6}})
+    std::erase_if(holed.triangles, [&](const Triangle& t) {
+      return norm((holed.vertices[t[0]] + holed.vertices[t[1]] + holed.vertices[t[2]]) / 3 - hole) < 0.25;
+    });
+  std::size_t count = 0;
+  for (const std::size_t vertices : {1000u, 4000u}) {
+    const MeshResult result = filled(holes_filled(holed, count), vertices);
+    EXPECT_EQ(count, 3u);
+    expect_good_mesh(result);
+    EXPECT_EQ(result.report.disagreements, 0u);
+    EXPECT_EQ(result.report.quality.euler, 2);
+  }
+}
+
 }  // namespace
 }  // namespace evenmesh
