@@ -34,6 +34,60 @@ TEST(Polish, LeavesGoodTrianglesAlone) {
   EXPECT_EQ(mesh.vertices, vertices);
 }
 
+/// A shaken torus whose outermost vertices are held on the circle there.
+struct HeldTorus {
+  explicit HeldTorus(std::uint64_t seed) : mesh(make_torus(1, 0.35, 24, 8)) {
+    constexpr int pieces = 240;
+    CreaseChain circle;
+    for (int i = 0; i <= pieces; ++i) {
+      const double angle = 2 * std::numbers::pi * (i % pieces) / pieces;
+      circle.points.push_back({1.35 * std::cos(angle), 1.35 * std::sin(angle), 0});
+      circle.arc.push_back(i);
+    }
+    holds.creases.chains.push_back(circle);
+    Random random(seed);
+    const auto shaken = [&] { return 0.16 * (random.uniform() - 0.5); };
+    for (Vec3& v : mesh.vertices) {
+      const bool held = std::abs(std::hypot(v.x, v.y) - 1.35) < 1e-9;
+      holds.chain.push_back(held ? 0 : Holds::free);
+      if (!held) v += {shaken(), shaken(), shaken()};
+    }
+    for (const Triangle& t : mesh.triangles)
+      for (std::size_t c = 0; c < 3; ++c)
+        if (const auto [v, w] = std::minmax(t[c], t[(c + 1) % 3]); holds.vertex(v) && holds.vertex(w))
+          holds.edges.push_back({v, w});
+    std::sort(holds.edges.begin(), holds.edges.end());
+  }
+  double bulge() const {
+    const VertexRings rings(mesh);
+    double most = 0;
+    for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
+      if (holds.vertex(v)) most = std::max(most, holds.bulge(mesh, v, rings.neighbours(v)));
+    return most;
+  }
+
+  Mesh mesh;
+  Holds holds;
+};
+
+TEST(Polish, DoesNotSlideVerticesSoFarThatTheyCutTheirCreaseOff) {
+  evenmesh::Run run(1);
+  const double even = 1.35 * (1 - std::cos(std::numbers::pi / 24));
+  double unlimited = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    for (const double most : {1.1 * even, 10.0}) {
+      HeldTorus torus(seed);
+      EXPECT_NEAR(torus.bulge(), even, 1e-3);
+      torus.holds.most_bulge = most;
+      EXPECT_GT(polish(torus.mesh, nullptr, run, torus.holds), 0u);
+      if (most > 1)
+        unlimited = std::max(unlimited, torus.bulge());
+      else
+        EXPECT_LE(torus.bulge(), 1.1 * even + 1e-12);
+    }
+  EXPECT_GT(unlimited, 1.2 * even) << "or the limit is not tested";
+}
+
 TEST(Polish, ScoreIsOneForGoodTrianglesAndZeroForNone) {
   EXPECT_GT(VertexRings::score({0, 0, 0}, {1, 0, 0}, {0.5, std::sqrt(0.75), 0}), 1.3);
   EXPECT_EQ(VertexRings::score({0, 0, 0}, {0, 0, 0}, {1, 0, 0}), 0);
