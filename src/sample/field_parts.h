@@ -91,7 +91,8 @@ class TileScanner {
   std::vector<std::size_t> asked_;  ///< where in f_ the values go
 };
 
-/// Finds where f = 0 on each bracket, to 1e-4 cells, with its normal, and fills in the arrays of `part`.
+/// Finds where f = 0 on each bracket, to 1e-4 cells, with its normal, and fills in the arrays of `part`; to 4e-3 cells
+/// where gradients are dear and f is so rough that no chord finds the root.
 /// Fields without gradient are bisected to 2^-12 cells and get the edge's axis as their normal. Calls of the field: two
 /// or three, and one for each step that the slowest root of a batch takes, at most 40.
 class RootFinder {

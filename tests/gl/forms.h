@@ -50,7 +50,7 @@ inline const Form as_shader{.name = "glsl",
                                 },
                             .cost = formula_cost,
                             .expressions_only = true,
-                            .roots = 1e-3,
+                            .roots = 4e-3,
                             .keeps_infinities = false};
 
 }  // namespace evenmesh::testing

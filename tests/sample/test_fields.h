@@ -71,7 +71,7 @@ inline const testing::Form dear{.name = "dear",
                                       made.what = std::make_shared<const DearField<Doubles>>(doubles_of(shape));
                                       return made;
                                     },
-                                .roots = 1e-3};
+                                .roots = 4e-3};
 
 /// Ball of radius 1 with the interval of its distance.
 class BallField : public Field {
