@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "refine/flips.h"
+#include "refine/polish.h"
 
 namespace evenmesh {
 namespace {
+
+constexpr int polishing_rounds = 4;
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
@@ -143,12 +146,10 @@ void loosen_knots(Mesh& mesh, Pairs pairs, const Projector* projector, const Int
   }
 }
 
-}  // namespace
-
-std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run,
-                     const Holds& holds) {
+/// Returns the number of pairs that are left.
+std::size_t pull_apart(Mesh& mesh, Pairs pairs, const Projector* projector, const IntersectionFinder& find, Run& run,
+                       const Holds& holds) {
   constexpr int rounds = 12, knot_rounds = 3;
-  auto pairs = find(mesh);
   Mesh best = mesh;
   std::size_t fewest = pairs.size();
   for (int round = 0; round < rounds && !pairs.empty(); ++round) {
@@ -172,6 +173,29 @@ std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionF
   }
   mesh = std::move(best);
   return fewest;
+}
+
+}  // namespace
+
+std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run,
+                     const Holds& holds) {
+  Pairs pairs = find(mesh);
+  if (pairs.empty()) return 0;
+  const std::size_t left = pull_apart(mesh, std::move(pairs), projector, find, run, holds);
+  // What was pulled apart without regard to shapes is polished; where that would undo it, it stays as it is.
+  Mesh polished = mesh;
+  polish(polished, projector, run, holds);
+  for (int rings = 0; rings < polishing_rounds; ++rings) {
+    const Pairs again = find(polished);
+    if (again.size() <= left) {
+      mesh = std::move(polished);
+      break;
+    }
+    const std::vector<char> back = region(mesh, again, rings);
+    for (std::size_t v = 0; v < back.size(); ++v)
+      if (back[v]) polished.vertices[v] = mesh.vertices[v];
+  }
+  return left;
 }
 
 }  // namespace evenmesh

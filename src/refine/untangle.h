@@ -16,8 +16,8 @@ namespace evenmesh {
 using IntersectionFinder = std::function<std::vector<std::pair<std::uint32_t, std::uint32_t>>(const Mesh&)>;
 
 /// Smooths the vertices of intersecting triangles, in growing neighbourhoods, until nothing intersects or nothing
-/// helps. Returns the number of pairs that are left. Cost: one search, and one more for every round that was needed (at
-/// most 12).
+/// helps; then polishes what has become worse by it. Returns the number of pairs that are left. Cost: one search, and
+/// one more for every round that was needed (at most 12), and for the polish.
 /// @pre  two-manifold
 std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run,
                      const Holds& holds = {});

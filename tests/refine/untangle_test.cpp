@@ -1,6 +1,7 @@
 #include "refine/untangle.h"
 
 #include "refine/refine_testing.h"
+#include "refine/vertex_rings.h"
 
 namespace evenmesh {
 namespace {
@@ -48,6 +49,7 @@ TEST(Untangle, RepairsATangledSphere) {
     EXPECT_TRUE(crossing_pairs(mesh).empty());
     expect_closed_manifold(mesh);
     EXPECT_GT(volume_of(mesh), 3);
+    EXPECT_TRUE(triangles_below(mesh, 0.55).empty()) << "polished once it is apart";
   }
 }
 
