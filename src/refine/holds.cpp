@@ -28,7 +28,7 @@ ChainPoint nearest_on(const CreaseChain& chain, const Vec3& p) {
 
 /// Largest distance of the chain between two of its points from the chord; around a closed chain the shorter way.
 double bulge_between(const CreaseChain& chain, const Vec3& p, const Vec3& q) {
-  const auto [s, t] = std::minmax(nearest_on(chain, p).arc, nearest_on(chain, q).arc);
+  const auto [s, t] = std::minmax({nearest_on(chain, p).arc, nearest_on(chain, q).arc});
   const bool around = chain.points.front() == chain.points.back() && 2 * (t - s) > chain.length();
   const Vec3 along = q - p;
   const double length2 = squared_norm(along);
