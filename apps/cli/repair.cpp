@@ -55,7 +55,8 @@ int run_repair(RepairArguments a) {
     }
     std::size_t filled = 0;
     shape = shape_from_mesh(holes_filled(*shape.mesh(), filled), shape.name);
-    if (talk != Talk::quiet && filled > 0) say("note", fmt::format("{} holes filled", filled));
+    if (talk != Talk::quiet && filled > 0)
+      say("note", fmt::format("{} {} filled", filled, filled == 1 ? "hole" : "holes"));
     options.method = Method::raster;
     options.fill_cavities = hull != "all";
     if (hull == "oriented") shape.winding = Winding::positive;

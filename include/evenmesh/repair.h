@@ -33,7 +33,8 @@ Mesh cleaned(const Mesh& mesh, MeshDefects& defects);
 /// A fill must lie about half way between inside and outside, by the generalized winding number. So two rims that face
 /// each other across a gap, as of a part torn in two, stay open, and what rays say bridges them.
 /// @param filled  how many holes were filled
-/// Guarantee: vertices, and the triangles given, stay as they are. Cost: n³ ns for a hole of n edges.
+/// Guarantee: vertices, and the triangles given, stay as they are. Cost: n³ ns for a hole of n edges, and some 30 ns
+/// for every hole and triangle of a fill; where these are more than 10^8 pairs, as in soups, none is filled.
 /// @throws InvalidInput  a triangle's index is out of range
 Mesh holes_filled(const Mesh& mesh, std::size_t& filled);
 

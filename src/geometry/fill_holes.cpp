@@ -15,8 +15,9 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t longest_loop = 400;  ///< edges; the cost goes with the third power
-constexpr double most_astray = 0.25;       ///< of the winding number half way between inside and outside
+constexpr std::size_t longest_loop = 400;        ///< edges; the cost goes with the third power
+constexpr std::size_t most_views = 100'000'000;  ///< of a fill's triangles from fills: some seconds
+constexpr double most_astray = 0.25;             ///< of the winding number half way between inside and outside
 
 constexpr std::uint32_t none = 0xffffffffu;
 
@@ -88,6 +89,10 @@ Mesh holes_filled(const Mesh& mesh, std::size_t& filled) {
       if (v >= mesh.vertices.size()) throw InvalidInput("a triangle uses a vertex that does not exist");
   std::vector<std::vector<Triangle>> fills;
   for (const auto& loop : boundary_loops(mesh)) fills.push_back(least_area_fill(mesh, loop));
+  std::size_t triangles = 0;
+  for (const auto& fill : fills) triangles += fill.size();
+  filled = 0;
+  if (fills.size() * triangles > most_views) return mesh;
   // With all holes filled the winding number on a fill, between its two sides, is half an odd number. Without, it
   // differs from that by what is seen of the fills.
   const auto is_half_way = [&](const std::vector<Triangle>& fill) {
@@ -104,7 +109,6 @@ Mesh holes_filled(const Mesh& mesh, std::size_t& filled) {
     return std::abs(seen) < most_astray;
   };
   Mesh result = mesh;
-  filled = 0;
   for (const auto& fill : fills)
     if (is_half_way(fill)) result.triangles.insert(result.triangles.end(), fill.begin(), fill.end()), ++filled;
   return result;

@@ -63,5 +63,17 @@ TEST(HolesFilled, AFinIsNoHole) {
   EXPECT_EQ(filled, 0u);
 }
 
+TEST(HolesFilled, SoupsAreLeftAsTheyAre) {
+  Mesh soup;
+  for (std::uint32_t i = 0; i < 12'000; ++i) {
+    const double x = i;
+    soup.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    soup.vertices.insert(soup.vertices.end(), {{x, 0, 0}, {x + 0.5, 0, 0}, {x, 0.5, 0.1}});
+  }
+  std::size_t filled = 1;
+  EXPECT_EQ(holes_filled(soup, filled).triangles, soup.triangles);
+  EXPECT_EQ(filled, 0u);
+}
+
 }  // namespace
 }  // namespace evenmesh
