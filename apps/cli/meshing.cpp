@@ -183,8 +183,6 @@ Plan check(MeshingArguments& a, const Operation& operation) {
   if (!a.json.empty()) check_output("--json", a.json);
   if (!a.dump_shell.empty()) check_output("--dump-shell", a.dump_shell);
   if (!a.dump_dexels.empty()) check_output("--dump-dexels", a.dump_dexels);
-  plan.options.keep_dexels = !a.dump_dexels.empty();
-  plan.options.keep_shell = !a.dump_shell.empty(), plan.options.keep_shell_cut = !a.report.empty();
   if ((a.output == "-") + (a.json == "-") + (a.report == "-") + (a.dump_shell == "-") + (a.dump_dexels == "-") > 1) {
     throw InvalidInput("only one of -o, --json, --report, --dump-shell and --dump-dexels can go to standard output");
   }
@@ -232,6 +230,10 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
   Run run(plan.threads);
   const CancelOnInterrupt interrupt(run);
   MeshResult result;
+  Artifacts kept;
+  if (!a.dump_dexels.empty()) kept.dexels.emplace();
+  if (!a.dump_shell.empty()) kept.shell.emplace();
+  if (!a.report.empty()) kept.shell_cut.emplace();
   std::string html;
   double reading = 0;
   {
@@ -244,14 +246,14 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
     MeshOptions options = plan.options;
     if (operation.prepare) operation.prepare(shape, options, plan.talk);
     reading = seconds_since(start);
-    result = mesh_shape(shape, options, run);
+    result = mesh_shape(shape, options, run, &kept);
     auto& seconds = result.report.seconds;
     seconds.insert(seconds.begin(), {"read", reading});
-    if (!a.dump_shell.empty() && result.shell.voxels.empty())
+    if (!a.dump_shell.empty() && !kept.shell)
       throw InvalidInput("--dump-shell: rays have no shell; add --method shell");
-    if (!a.dump_dexels.empty() && result.dexels.crossings.empty())
+    if (!a.dump_dexels.empty() && !kept.dexels)
       throw InvalidInput("--dump-dexels: sheets have no inside; add --method raster");
-    if (!a.report.empty()) html = report_html(result, shape.name, run);
+    if (!a.report.empty()) html = report_html(result, shape.name, run, kept);
   }
   {
     const WritingGuard guard;
@@ -259,17 +261,17 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
     write_output(plan.output, result.mesh);
     result.report.seconds.emplace_back("write", seconds_since(writing));
     if (!a.report.empty()) write_output(a.report, html);
-    if (!a.dump_shell.empty()) write_output(a.dump_shell, serialize_vdb(result.shell));
-    if (!a.dump_dexels.empty()) write_output(a.dump_dexels, serialize_dexels(result.dexels));
+    if (!a.dump_shell.empty()) write_output(a.dump_shell, serialize_vdb(*kept.shell));
+    if (!a.dump_dexels.empty()) write_output(a.dump_dexels, serialize_dexels(*kept.dexels));
     if (!a.json.empty()) write_output(a.json, run_json(result.report, a, operation, plan.threads));
   }
-  const bool kept = tell_notices(result.report, plan.talk);
+  const bool promises_kept = tell_notices(result.report, plan.talk);
   if (plan.talk != Talk::quiet) {
     const bool stdout_taken =
         a.output == "-" || a.json == "-" || a.report == "-" || a.dump_shell == "-" || a.dump_dexels == "-";
     fmt::print(stdout_taken ? stderr : stdout, "{}", summary(result.report, a.output, seconds_since(start)));
   }
-  return kept ? Status::done : Status::promise_broken;
+  return promises_kept ? Status::done : Status::promise_broken;
 }
 
 }  // namespace evenmesh::cli

@@ -58,9 +58,6 @@ struct MeshOptions {
       iterations{};             ///< evaluations of the energy per level at most, [0, 10000]; default by quality
   double tolerance = 1e-4;      ///< stop when the mean seed moves less than this share of the seed spacing, (0, 1)
   std::uint64_t seed = 1;       ///< of the random numbers
-  bool keep_dexels = false;     ///< return the crossings that a solid was meshed from
-  bool keep_shell = false;      ///< return the shell's voxels
-  bool keep_shell_cut = false;  ///< return one layer of them, for pictures
 };
 
 /// A promise that could not be kept, or something the user should know.
@@ -105,11 +102,16 @@ struct Report {
 struct MeshResult {
   Mesh mesh;
   Report report;
-  Dexels dexels;  ///< when asked for, of solids
-  /// The voxels of the shell, when asked for and made; values: exact distance from the nearest voxel that the surface
-  /// touches, centre to centre, model units.
-  SparseVolume shell;
-  SparseVolume shell_cut;  ///< of these the middle layer across the shortest side of the bounds
+};
+
+/// What a run makes on its way and keeps on request. A member that holds something (`kept.shell.emplace()`) is asked
+/// for; after the run it holds what was made, or nothing where the method makes no such thing.
+struct Artifacts {
+  std::optional<Dexels> dexels;  ///< the crossings that a solid was meshed from; sheets have none
+  /// The voxels of the shell; values: exact distance from the nearest voxel that the surface touches, centre to centre,
+  /// model units. Solids meshed by rays have none.
+  std::optional<SparseVolume> shell;
+  std::optional<SparseVolume> shell_cut;  ///< of these the middle layer across the shortest side of the bounds
 };
 
 /// Samples a shape's surface, spreads seeds evenly over it (centroidal Voronoi tessellation) and connects them.
@@ -117,13 +119,15 @@ struct MeshResult {
 /// Guarantee: closed, two-manifold, oriented outward, without self-intersections; what could not be kept is a notice
 /// with promise_broken. The shell method gives a boundary where the surface is open. Same bytes for any number of
 /// threads. Cost: two cores take about 0.1 ms and 7 kB per vertex.
+/// @param kept  may be null: nothing is kept
 /// @throws InvalidInput   options out of range
 /// @throws UnusableInput  no surface within the bounds, or their longest side is not between 1e-8 and 1e10
 /// @throws Cancelled      through `run`
 /// Based on Martínez, Claux, Lefebvre, Raster2Mesh, Inria RR-8684, 2015, and, for the shell, on Leung, Wang, He, Liu,
 /// Wang, A unified framework for isotropic meshing based on narrow-banded Euclidean distance transformation,
 /// Computational Visual Media 1(3), 2015.
-MeshResult mesh_shape(const Shape& shape, const MeshOptions& options = {}, Run& run = Run::silent());
+MeshResult mesh_shape(const Shape& shape, const MeshOptions& options = {}, Run& run = Run::silent(),
+                      Artifacts* kept = nullptr);
 
 /// A line per figure, `"key": value`, as one JSON object (keys of the command line's --json).
 std::string report_json(const Report& report);

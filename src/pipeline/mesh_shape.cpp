@@ -93,10 +93,11 @@ constexpr double smallest_model = 1e-8, largest_model = 1e10;
 
 class Job {
  public:
-  Job(const Shape& shape, const MeshOptions& options, Run& run)
+  Job(const Shape& shape, const MeshOptions& options, Run& run, Artifacts& kept)
       : shape_(shape),
         options_(options),
         run_(run),
+        kept_(kept),
         stages_(run, report_),
         by_shell_(wants_shell(shape, options, run)) {}
 
@@ -153,17 +154,21 @@ class Job {
   }
 
   ConnectedCells cells_of_sheets() {
-    ShellSampling sampling = sample_by_shell(shape_, options_, stages_, result_, run_);
+    kept_.dexels.reset();
+    ShellSampling sampling = sample_by_shell(shape_, options_, stages_, report_, kept_, run_);
     ConnectedCells cells = connect_shell(sampling, options_, stages_, report_, run_);
     samples_ = std::move(sampling.on_surface);
     return cells;
   }
   ConnectedCells cells_of_solid() {
-    if (options_.wrap)
-      samples_ = sample_wrapping(shape_, options_, stages_, result_, run_);
-    else
+    if (options_.wrap) {
+      samples_ = sample_wrapping(shape_, options_, stages_, report_, kept_, run_);
+    } else {
+      kept_.shell.reset();
+      kept_.shell_cut.reset();
       sample();
-    if (options_.keep_dexels) result_.dexels = dexels_of(samples_);
+    }
+    if (kept_.dexels) kept_.dexels = dexels_of(samples_);
     return balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
   }
 
@@ -431,6 +436,7 @@ class Job {
   Shape shape_;
   const MeshOptions& options_;
   Run& run_;
+  Artifacts& kept_;
   MeshResult result_;
   Report& report_ = result_.report;
   Stages stages_;
@@ -446,9 +452,10 @@ class Job {
 
 }  // namespace
 
-MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, Run& run) {
+MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, Run& run, Artifacts* kept) {
   check(options);
-  return with_threads(run, [&] { return Job(shape, options, run).result(); });
+  Artifacts none;
+  return with_threads(run, [&] { return Job(shape, options, run, kept ? *kept : none).result(); });
 }
 
 }  // namespace evenmesh

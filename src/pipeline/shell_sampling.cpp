@@ -200,14 +200,16 @@ Notice merge_notice(const FilledGap& narrowest, const Report& report) {
                       narrowest.width, report.merges, at.x, at.y, at.z, cure)};
 }
 
-/// Fills in result.shell and result.shell_cut as far as asked for.
-void keep_shell(const Shell& shell, const Box& bounds, const MeshOptions& options, MeshResult& result) {
+/// Fills in kept.shell and kept.shell_cut as far as asked for.
+void keep_shell(const Shell& shell, const Box& bounds, Artifacts& kept) {
+  if (!kept.shell && !kept.shell_cut) return;
   const VoxelGrid& grid = shell.grid();
   const SparseVolume empty{.name = "distance",
                            .origin = grid.center({0, 0, 0}),
                            .side = grid.side,
                            .background = static_cast<float>(grid.side * (shell.reach() + 1))};
-  result.shell = result.shell_cut = empty;
+  if (kept.shell) kept.shell = empty;
+  if (kept.shell_cut) kept.shell_cut = empty;
   const Vec3 size = bounds.size(), middle = (bounds.center() - grid.origin) / grid.side;
   const std::size_t across = size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2;
   const auto layer = static_cast<std::int32_t>(middle[static_cast<int>(across)]);
@@ -218,21 +220,20 @@ void keep_shell(const Shell& shell, const Box& bounds, const MeshOptions& option
   for (std::size_t t = 0; t < shell.tiles().size(); ++t) {
     const Voxel corner = shell.tiles()[t].corner();
     const bool in_cut =
-        options.keep_shell_cut && corner[across] / std::int32_t{tile_size} == layer / std::int32_t{tile_size};
-    if (!options.keep_shell && !in_cut) continue;
+        kept.shell_cut && corner[across] / std::int32_t{tile_size} == layer / std::int32_t{tile_size};
+    if (!kept.shell && !in_cut) continue;
     const NearestSite* nearest = shell.nearest(t).data();
     for_each_voxel(shell.tiles()[t], [&](unsigned x, unsigned y, unsigned z) {
       const Voxel at{corner[0] + std::int32_t(x), corner[1] + std::int32_t(y), corner[2] + std::int32_t(z)};
-      if (options.keep_shell) add(result.shell, at, *nearest);
-      if (in_cut && at[across] == layer) add(result.shell_cut, at, *nearest);
+      if (kept.shell) add(*kept.shell, at, *nearest);
+      if (in_cut && at[across] == layer) add(*kept.shell_cut, at, *nearest);
       ++nearest;
     });
   }
 }
 
-ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& stages, const MeshOptions& options,
-                            MeshResult& result, std::optional<FilledGap>& narrowest, Run& run) {
-  Report& report = result.report;
+ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& stages, Report& report, Artifacts& kept,
+                            std::optional<FilledGap>& narrowest, Run& run) {
   const SiteVoxels sites = stages.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, run); });
   if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
   ShellSampling sampling;
@@ -240,7 +241,7 @@ ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& s
   stages.stage("shell", 0.1, [&] {
     const Shell shell = build_shell(sites, plan.thickness, run);
     report.shell_voxels = shell.size();
-    keep_shell(shell, shape.bounds, options, result);
+    keep_shell(shell, shape.bounds, kept);
     sampling.surface = shell_surface(shell, sites, run);
     gaps = filled_gaps(shell, sites, run);
   });
@@ -264,15 +265,14 @@ ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& s
   return sampling;
 }
 
-SampleSet sample_enclosed(const Shape& shape, const ShellPlan& plan, Stages& stages, const MeshOptions& options,
-                          MeshResult& result, Run& run) {
-  Report& report = result.report;
+SampleSet sample_enclosed(const Shape& shape, const ShellPlan& plan, Stages& stages, Report& report, Artifacts& kept,
+                          Run& run) {
   const SiteVoxels sites = stages.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, run); });
   if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
   SampleSet samples = stages.stage("shell", 0.1, [&] {
     const Shell shell = build_shell(sites, plan.thickness, run);
     report.shell_voxels = shell.size();
-    keep_shell(shell, shape.bounds, options, result);
+    keep_shell(shell, shape.bounds, kept);
     const ShellSurface surface = shell_surface(shell, sites, run);
     const SiteVoxels border = outer_border(surface, outer_sheets(surface, run), sites.grid, run);
     return enclosed_by(shell_surface(build_shell(border, plan.thickness - 1, run), border, run), run);
@@ -299,15 +299,14 @@ void limit_seeds(Report& report) {
 
 }  // namespace
 
-ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, MeshResult& result,
-                              Run& run) {
-  Report& report = result.report;
+ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report,
+                              Artifacts& kept, Run& run) {
   const ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
   ShellSampling sampling;
   std::optional<FilledGap> narrowest;
   sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
     sampling = {};  // frees the memory first
-    sampling = sample_sheets(shape, p, stages, options, result, narrowest, run);
+    sampling = sample_sheets(shape, p, stages, report, kept, narrowest, run);
     if (!options.density) return sampling.samples.size();
     weigh_by_density(sampling.on_surface, options.density, run);
     return enough_for(weigh_by_density(sampling.samples, options.density, run), sampling.samples.size());
@@ -320,16 +319,15 @@ ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, St
   return sampling;
 }
 
-SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, MeshResult& result,
-                          Run& run) {
-  Report& report = result.report;
+SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report,
+                          Artifacts& kept, Run& run) {
   ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
   plan.thickness = std::max(plan.thickness, 2u);
   if (plan.bridge > 0) plan.bridge = std::max(plan.bridge, plan.thickness);
   SampleSet samples;
   sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
     samples = {};
-    samples = sample_enclosed(shape, p, stages, options, result, run);
+    samples = sample_enclosed(shape, p, stages, report, kept, run);
     if (!options.density) return samples.size();
     return enough_for(weigh_by_density(samples, options.density, run), samples.size());
   });

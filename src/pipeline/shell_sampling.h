@@ -16,14 +16,15 @@ struct ShellSampling {
   SampleSet on_surface;                   ///< the same, drawn onto the surface in the middle of the shell
 };
 
-/// Chooses resolution and thickness, samples, and fills in the result's shell and the report's counts: asked seeds,
-/// samples, sites, shell.
+/// Chooses resolution and thickness, samples, keeps the shell if asked for, and fills in the report's counts: asked
+/// seeds, samples, sites, shell.
 /// @throws UnusableInput  nothing of the surface lies within the bounds
-ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, MeshResult& result,
-                              Run& run);
+ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report,
+                              Artifacts& kept, Run& run);
 
 /// The same for the solid that wraps the surface: what the outside cannot reach, eroded back by the thickness to one
 /// voxel above the surface (a morphological closing). Closed, whatever the input is; its samples bound a solid.
-SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, MeshResult& result, Run& run);
+SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report,
+                          Artifacts& kept, Run& run);
 
 }  // namespace evenmesh

@@ -135,11 +135,11 @@ std::string pictures_html(const Mesh& mesh, Run& run) {
   return "<div class=\"pictures\">" + html + "</div>";
 }
 
-std::string shell_html(const MeshResult& result) {
-  if (result.shell_cut.voxels.empty()) return {};
+std::string shell_html(const Mesh& mesh, const Artifacts& kept) {
+  if (!kept.shell_cut || kept.shell_cut->voxels.empty()) return {};
   constexpr int width = 680;
   constexpr double window = 48;
-  const auto cut = [&](double voxels) { return shell_cut_image(result.shell_cut, result.mesh, width, voxels); };
+  const auto cut = [&](double voxels) { return shell_cut_image(*kept.shell_cut, mesh, width, voxels); };
   return "<div class=\"pictures\">" +
          picture(cut(0), "cut through the shell",
                  "a cut through the shell of voxels, darkest where the surface passes; red: the mesh") +
@@ -204,7 +204,7 @@ std::string tables_html(const Report& report) {
 
 }  // namespace
 
-std::string report_html(const MeshResult& result, const std::string& title, Run& run) {
+std::string report_html(const MeshResult& result, const std::string& title, Run& run, const Artifacts& kept) {
   const std::string name = escape_html(title);
   std::string html =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
@@ -213,7 +213,7 @@ std::string report_html(const MeshResult& result, const std::string& title, Run&
   html += "<h1>" + name + "</h1><p class=\"lead\">Mesh report by evenmesh</p>\n";
   html += notices_html(result.report) + tiles_html(result.report) + "\n";
   if (!result.mesh.triangles.empty())
-    html += pictures_html(result.mesh, run) + "\n" + shell_html(result) + charts_html(result) + "\n";
+    html += pictures_html(result.mesh, run) + "\n" + shell_html(result.mesh, kept) + charts_html(result) + "\n";
   html += tables_html(result.report) + "\n</main></body></html>\n";
   return html;
 }

@@ -140,22 +140,26 @@ TEST(ShellMethod, SaysWhichThicknessKeepsSheetsApart) {
 
 TEST(ShellMethod, GivesTheShellWhenAsked) {
   MeshOptions options = by_shell(100, 30);
-  options.keep_shell = options.keep_shell_cut = true;
+  Artifacts kept;
+  kept.shell.emplace();
+  kept.shell_cut.emplace();
   for (const bool wrap : {false, true}) {
     options.wrap = wrap;
-    const MeshResult result = meshed(shape_from_mesh(make_icosphere(3)), options);
-    EXPECT_EQ(result.shell.voxels.size(), result.report.shell_voxels);
-    ASSERT_EQ(result.shell.values.size(), result.shell.voxels.size());
-    for (std::size_t i = 0; i < result.shell.voxels.size(); ++i) {
-      const auto& v = result.shell.voxels[i];
-      const Vec3 p = result.shell.origin + result.shell.side * Vec3{double(v[0]), double(v[1]), double(v[2])};
-      EXPECT_NEAR(result.shell.values[i], std::abs(norm(p) - 1), 1.2 * result.shell.side);
+    const MeshResult result = mesh_shape(shape_from_mesh(make_icosphere(3)), options, Run::silent(), &kept);
+    ASSERT_TRUE(kept.shell && kept.shell_cut);
+    EXPECT_EQ(kept.shell->voxels.size(), result.report.shell_voxels);
+    ASSERT_EQ(kept.shell->values.size(), kept.shell->voxels.size());
+    for (std::size_t i = 0; i < kept.shell->voxels.size(); ++i) {
+      const auto& v = kept.shell->voxels[i];
+      const Vec3 p = kept.shell->origin + kept.shell->side * Vec3{double(v[0]), double(v[1]), double(v[2])};
+      EXPECT_NEAR(kept.shell->values[i], std::abs(norm(p) - 1), 1.2 * kept.shell->side);
     }
-    const std::size_t cut = result.shell_cut.voxels.size();
+    const std::size_t cut = kept.shell_cut->voxels.size();
     EXPECT_GT(cut, 50u);
-    EXPECT_LT(cut, result.shell.voxels.size() / 8);
+    EXPECT_LT(cut, kept.shell->voxels.size() / 8);
   }
-  EXPECT_TRUE(meshed(shape_from_mesh(make_icosphere(3)), by_shell(100, 30)).shell.voxels.empty());
+  mesh_shape(shape_from_mesh(make_icosphere(3)), {.vertices = 100, .method = Method::raster}, Run::silent(), &kept);
+  EXPECT_FALSE(kept.shell || kept.shell_cut) << "rays have none";
 }
 
 TEST(ShellMethod, SolidsMadeOfOthersAreMeshedToo) {

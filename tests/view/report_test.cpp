@@ -33,14 +33,15 @@ std::size_t count_of(const std::string& text, const std::string& what) {
 }
 
 TEST(Report, ShowsACutThroughTheShell) {
-  MeshResult result = example();
-  SparseVolume& cut = result.shell_cut;
+  const MeshResult result = example();
+  Artifacts kept;
+  SparseVolume& cut = kept.shell_cut.emplace();
   cut.side = 0.1;
   for (std::int32_t i = -12; i <= 12; ++i)
     for (std::int32_t j = -12; j <= 12; ++j)
       if (const double off = std::abs(std::hypot(i, j) - 10); off < 2)
         cut.voxels.push_back({i, 0, j}), cut.values.push_back(static_cast<float>(0.1 * off));
-  EXPECT_EQ(count_of(report_html(result, "shell"), "src=\"data:image/png;base64,iVBORw0KGgo"), 5u);
+  EXPECT_EQ(count_of(report_html(result, "shell", Run::silent(), kept), "src=\"data:image/png;base64,iVBORw0KGgo"), 5u);
   for (const double window : {0.0, 8.0}) {
     const Image image = shell_cut_image(cut, result.mesh, 300, window);
     EXPECT_EQ(image.width, 300);
