@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core/parallel.h"
-#include "cvt/balance.h"
+#include "cvt/relax.h"
 #include "cvt/starts.h"
 #include "evenmesh/shape.h"
 #include "sample/sample.h"

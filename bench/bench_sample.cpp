@@ -3,8 +3,9 @@
 #include <benchmark/benchmark.h>
 
 #include "geometry/primitives.h"
+#include "grid/coarsen.h"
+#include "grid/tri_dexel.h"
 #include "sample/sample.h"
-#include "sample/tri_dexel.h"
 
 namespace evenmesh {
 namespace {

@@ -12,9 +12,9 @@
 #include <fstream>
 #include <string>
 
+#include "band/narrow_band.h"
 #include "evenmesh/io.h"
 #include "geometry/primitives.h"
-#include "sample/shell.h"
 
 namespace {
 

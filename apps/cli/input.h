@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/points.h"
-#include "evenmesh/run.h"
 #include "evenmesh/shape.h"
 
 namespace evenmesh::cli {

@@ -1,7 +1,7 @@
 #pragma once
 /// Ctrl-C and SIGTERM: the computation stops, nothing is written, exit status 130.
 
-#include "evenmesh/run.h"
+#include "evenmesh/execution_context.h"
 
 namespace evenmesh::cli {
 

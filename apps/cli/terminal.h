@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "evenmesh/run.h"
+#include "evenmesh/execution_context.h"
 
 namespace evenmesh::cli {
 

@@ -9,9 +9,9 @@
 #include <variant>
 
 #include "evenmesh/dexels.h"
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/points.h"
-#include "evenmesh/run.h"
 #include "evenmesh/volume.h"
 
 namespace evenmesh {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
-#include "evenmesh/run.h"
 
 namespace evenmesh {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
-#include "evenmesh/run.h"
 
 namespace evenmesh {
 

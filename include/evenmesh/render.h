@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/mesh_shape.h"
-#include "evenmesh/run.h"
 
 namespace evenmesh {
 

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
-#include "evenmesh/run.h"
 
 namespace evenmesh {
 

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string_view>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/glsl.h"
 #include "evenmesh/raster.h"
-#include "evenmesh/run.h"
 #include "evenmesh/shape.h"
 
 namespace evenmesh {

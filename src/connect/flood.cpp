@@ -5,7 +5,7 @@
 #include <queue>
 #include <tuple>
 
-#include "connect/brick_union.h"
+#include "grid/brick_union.h"
 
 namespace evenmesh {
 namespace {

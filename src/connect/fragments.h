@@ -8,7 +8,7 @@
 
 #include "connect/label_complex.h"
 #include "core/parallel.h"
-#include "sample/sample_set.h"
+#include "grid/sample_set.h"
 
 namespace evenmesh {
 

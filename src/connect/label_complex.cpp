@@ -7,8 +7,8 @@
 #include <limits>
 #include <tuple>
 
-#include "connect/brick_union.h"
 #include "connect/dual_polygons.h"
+#include "grid/brick_union.h"
 
 namespace evenmesh {
 namespace {

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "evenmesh/run.h"
+#include "evenmesh/execution_context.h"
 
 namespace evenmesh {
 

@@ -9,7 +9,7 @@
 
 #include "core/parallel.h"
 #include "cvt/cell_kernels.h"
-#include "sample/sample_set.h"
+#include "grid/sample_set.h"
 
 namespace evenmesh {
 

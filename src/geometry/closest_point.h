@@ -5,8 +5,8 @@
 #include <limits>
 #include <memory>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
-#include "evenmesh/run.h"
 
 namespace evenmesh {
 

@@ -10,8 +10,8 @@
 
 #include "evenmesh/error.h"
 #include "gl/raster_view.h"
+#include "sample/extra_directions.h"
 #include "sample/rays.h"
-#include "sample/witnesses.h"
 
 namespace evenmesh::gl {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gl/raster_device.h"
-#include "sample/tri_dexel.h"
+#include "grid/tri_dexel.h"
 #include "shape/sampler.h"
 
 namespace evenmesh::gl {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sample/tri_dexel.h"
+#include "grid/tri_dexel.h"
 
 namespace evenmesh::gl {
 namespace {

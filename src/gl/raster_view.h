@@ -6,7 +6,7 @@
 
 #include "evenmesh/solid.h"
 #include "gl/raster_device.h"
-#include "sample/sample_set.h"
+#include "grid/sample_set.h"
 
 namespace evenmesh::gl {
 

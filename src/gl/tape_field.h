@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "gl/context.h"
+#include "shape/expression_graph.h"
 #include "shape/field.h"
-#include "shape/program.h"
 
 namespace evenmesh::gl {
 

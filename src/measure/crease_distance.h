@@ -1,8 +1,8 @@
 #pragma once
 /// Whether a mesh has the sharp edges of another.
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
-#include "evenmesh/run.h"
 
 namespace evenmesh {
 

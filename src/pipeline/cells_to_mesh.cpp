@@ -7,15 +7,15 @@
 #include <numeric>
 #include <set>
 
-#include "connect/crease_crowding.h"
 #include "connect/flood.h"
 #include "connect/fragments.h"
-#include "connect/pinches.h"
-#include "connect/surface_parts.h"
 #include "cvt/starts.h"
-#include "pipeline/fineness.h"
-#include "pipeline/mend.h"
-#include "pipeline/regularize.h"
+#include "features/crowding.h"
+#include "grid/surface_components.h"
+#include "pipeline/plan.h"
+#include "topology/ambiguous_faces.h"
+#include "topology/regularize.h"
+#include "topology/repair.h"
 
 namespace evenmesh {
 

@@ -1,12 +1,12 @@
 #pragma once
 /// The loop between cells and triangles: connect, insert seeds where the topology needs them, until two-manifold.
 
-#include "connect/balls.h"
-#include "connect/crease_seeds.h"
 #include "connect/label_complex.h"
-#include "cvt/balance.h"
+#include "cvt/relax.h"
 #include "evenmesh/mesh_shape.h"
-#include "pipeline/stages.h"
+#include "features/feature_seeds.h"
+#include "pipeline/stage_timer.h"
+#include "topology/balls.h"
 
 namespace evenmesh {
 

@@ -11,8 +11,8 @@
 #include "connect/flood.h"
 #include "connect/fragments.h"
 #include "geometry/half_edges.h"
-#include "pipeline/fineness.h"
-#include "pipeline/mend.h"
+#include "pipeline/plan.h"
+#include "topology/repair.h"
 
 namespace evenmesh {
 namespace {

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <optional>
 
-#include "connect/surface_parts.h"
+#include "band/filled_gaps.h"
+#include "band/moving_least_squares.h"
 #include "geometry/triangle.h"
-#include "pipeline/fineness.h"
-#include "sample/blocks.h"
-#include "sample/bridge_points.h"
-#include "sample/density.h"
-#include "sample/filled_gaps.h"
+#include "grid/blocks.h"
+#include "grid/density.h"
+#include "grid/surface_components.h"
+#include "pipeline/plan.h"
 #include "sample/sample.h"
 #include "shape/sampler.h"
 
@@ -219,8 +219,7 @@ void keep_shell(const Shell& shell, const Box& bounds, Artifacts& kept) {
   };
   for (std::size_t t = 0; t < shell.tiles().size(); ++t) {
     const Voxel corner = shell.tiles()[t].corner();
-    const bool in_cut =
-        kept.shell_cut && corner[across] / std::int32_t{tile_size} == layer / std::int32_t{tile_size};
+    const bool in_cut = kept.shell_cut && corner[across] / std::int32_t{tile_size} == layer / std::int32_t{tile_size};
     if (!kept.shell && !in_cut) continue;
     const NearestSite* nearest = shell.nearest(t).data();
     for_each_voxel(shell.tiles()[t], [&](unsigned x, unsigned y, unsigned z) {

@@ -1,9 +1,9 @@
 #pragma once
 /// The shell method between shape and samples: voxels, shell, sheets.
 
-#include "connect/sheets.h"
+#include "band/sheets.h"
 #include "evenmesh/mesh_shape.h"
-#include "pipeline/stages.h"
+#include "pipeline/stage_timer.h"
 
 namespace evenmesh {
 

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <span>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
-#include "evenmesh/run.h"
-#include "refine/holds.h"
+#include "grid/sample_set.h"
 #include "refine/projector.h"
-#include "sample/sample_set.h"
+#include "refine/vertex_constraints.h"
 
 namespace evenmesh {
 

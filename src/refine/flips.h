@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "evenmesh/mesh.h"
-#include "refine/holds.h"
+#include "refine/vertex_constraints.h"
 
 namespace evenmesh {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "sample/sample_set.h"
+#include "grid/sample_set.h"
 
 namespace evenmesh {
 

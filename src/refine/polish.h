@@ -1,10 +1,10 @@
 #pragma once
 /// Last improvement of the few worst triangles, and of the few worst deviations.
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
-#include "evenmesh/run.h"
-#include "refine/holds.h"
 #include "refine/projector.h"
+#include "refine/vertex_constraints.h"
 
 namespace evenmesh {
 

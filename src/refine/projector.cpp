@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "geometry/closest_point.h"
-#include "sample/morton.h"
+#include "grid/morton.h"
 #include "shape/field.h"
 
 namespace evenmesh {

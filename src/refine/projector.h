@@ -4,9 +4,9 @@
 #include <memory>
 #include <span>
 
-#include "evenmesh/run.h"
+#include "evenmesh/execution_context.h"
 #include "evenmesh/shape.h"
-#include "sample/sample_set.h"
+#include "grid/sample_set.h"
 
 namespace evenmesh {
 

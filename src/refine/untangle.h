@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "evenmesh/mesh.h"
-#include "refine/holds.h"
 #include "refine/projector.h"
+#include "refine/vertex_constraints.h"
 
 namespace evenmesh {
 

@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "evenmesh/error.h"
-#include "sample/blocks.h"
+#include "grid/blocks.h"
+#include "grid/morton.h"
+#include "grid/tri_dexel.h"
 #include "sample/field_parts.h"
-#include "sample/morton.h"
-#include "sample/tri_dexel.h"
 
 namespace evenmesh {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "geometry/closest_point.h"
 #include "geometry/triangle.h"
-#include "sample/dual_surface.h"
-#include "sample/inside_runs.h"
-#include "sample/morton.h"
+#include "grid/dual_surface.h"
+#include "grid/inside_runs.h"
+#include "grid/morton.h"
 
 namespace evenmesh {
 namespace {

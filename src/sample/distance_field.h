@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "evenmesh/run.h"
-#include "sample/sample_set.h"
+#include "evenmesh/execution_context.h"
+#include "grid/sample_set.h"
 #include "shape/field.h"
 
 namespace evenmesh {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <limits>
 
-#include "sample/blocks.h"
+#include "grid/blocks.h"
+#include "grid/morton.h"
 #include "sample/field_parts.h"
-#include "sample/morton.h"
 
 namespace evenmesh {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstring>
 #include <limits>
 
+#include "grid/morton.h"
 #include "sample/field_parts.h"
-#include "sample/morton.h"
 
 namespace evenmesh {
 namespace {

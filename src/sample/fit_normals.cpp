@@ -3,9 +3,9 @@
 #include <bit>
 #include <cmath>
 
+#include "grid/morton.h"
+#include "grid/tri_dexel.h"
 #include "sample/field_parts.h"
-#include "sample/morton.h"
-#include "sample/tri_dexel.h"
 
 namespace evenmesh {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "evenmesh/error.h"
-#include "sample/tri_dexel.h"
+#include "grid/tri_dexel.h"
 
 namespace evenmesh {
 namespace {

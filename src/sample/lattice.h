@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "evenmesh/mesh.h"
-#include "sample/sample_set.h"
+#include "grid/sample_set.h"
 
 namespace evenmesh {
 

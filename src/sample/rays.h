@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sample/tri_dexel.h"
+#include "grid/tri_dexel.h"
 
 namespace evenmesh {
 

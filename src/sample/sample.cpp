@@ -5,10 +5,10 @@
 
 #include "evenmesh/error.h"
 #include "evenmesh/solid.h"
-#include "sample/combine.h"
+#include "grid/combine.h"
+#include "grid/tri_dexel.h"
 #include "sample/distance_field.h"
 #include "sample/field_parts.h"
-#include "sample/tri_dexel.h"
 #include "shape/sampler.h"
 
 namespace evenmesh {

@@ -3,7 +3,7 @@
 
 #include "core/parallel.h"
 #include "evenmesh/shape.h"
-#include "sample/sample_set.h"
+#include "grid/sample_set.h"
 
 namespace evenmesh {
 
@@ -14,9 +14,5 @@ namespace evenmesh {
 /// @throws UnusableInput  when no grid edge crosses the surface
 /// Based on [Raster2Mesh §4.1]; edge rules by simulation of simplicity (Edelsbrunner, Mücke 1990).
 SampleSet sample_shape(const Shape& shape, const Grid& grid, Run& run = Run::silent());
-
-/// Every other ray of `fine` in both directions across it: the samples of a grid with twice the spacing (several per
-/// edge are kept), areas times four, in blocks of that grid's bricks with edge codes of that grid. Cost: O(samples).
-SampleSet coarsen(const SampleSet& fine, Run& run = Run::silent());
 
 }  // namespace evenmesh

@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "evenmesh/error.h"
+#include "grid/tri_dexel.h"
+#include "sample/extra_directions.h"
 #include "sample/lattice.h"
 #include "sample/rays.h"
-#include "sample/tri_dexel.h"
-#include "sample/witnesses.h"
 
 namespace evenmesh {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "sample/tri_dexel.h"
-#include "sample/witnesses.h"
+#include "grid/tri_dexel.h"
+#include "sample/extra_directions.h"
 
 namespace evenmesh {
 namespace {

@@ -6,7 +6,7 @@
 #include "evenmesh/mesh.h"
 #include "scene/bodies.h"
 #include "scene/csg_tree.h"
-#include "scene/workshop.h"
+#include "scene/scene_loader.h"
 
 namespace evenmesh {
 

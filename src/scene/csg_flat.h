@@ -9,7 +9,7 @@
 #include "scene/csg_bodies.h"
 #include "scene/csg_tree.h"
 #include "scene/outline.h"
-#include "scene/workshop.h"
+#include "scene/scene_loader.h"
 
 namespace evenmesh {
 

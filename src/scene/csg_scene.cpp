@@ -12,7 +12,7 @@
 #include "scene/csg_bodies.h"
 #include "scene/csg_flat.h"
 #include "scene/csg_tree.h"
-#include "scene/workshop.h"
+#include "scene/scene_loader.h"
 
 namespace evenmesh {
 namespace {

@@ -13,7 +13,7 @@
 #include "evenmesh/error.h"
 #include "scene/json_node.h"
 #include "scene/json_text.h"
-#include "scene/workshop.h"
+#include "scene/scene_loader.h"
 #include "shape/suggestions.h"
 
 namespace evenmesh {

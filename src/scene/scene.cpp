@@ -13,7 +13,7 @@
 #include "io/bytes.h"
 #include "io/text.h"
 #include "scene/csg_tree.h"
-#include "scene/workshop.h"
+#include "scene/scene_loader.h"
 
 namespace evenmesh {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "shape/program.h"
+#include "shape/expression_graph.h"
 
 namespace evenmesh {
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "shape/expression_graph.h"
 #include "shape/field.h"
-#include "shape/program.h"
 
 namespace evenmesh {
 

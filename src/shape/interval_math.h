@@ -1,7 +1,7 @@
 #pragma once
 /// Intervals that enclose both the exact value and what single precision makes of it.
 
-#include "shape/program.h"
+#include "shape/expression_graph.h"
 
 namespace evenmesh {
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
-#include "evenmesh/run.h"
 #include "evenmesh/solid.h"
 
 namespace evenmesh {

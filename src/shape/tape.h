@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "shape/expression_graph.h"
 #include "shape/field.h"
-#include "shape/program.h"
 
 namespace evenmesh {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/render.h"
-#include "evenmesh/run.h"
 #include "geometry/embree_scene.h"
 
 namespace evenmesh {

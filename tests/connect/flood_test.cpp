@@ -1,7 +1,7 @@
 #include "connect/flood.h"
 
 #include "connect/connect_testing.h"
-#include "connect/surface_parts.h"
+#include "grid/surface_components.h"
 
 namespace evenmesh {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "connect/connect_testing.h"
-#include "sample/blocks.h"
+#include "grid/blocks.h"
 
 namespace evenmesh {
 namespace {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "core/random.h"
-#include "cvt/balance.h"
 #include "cvt/cells.h"
+#include "cvt/relax.h"
 #include "cvt/starts.h"
 #include "geometry/primitives.h"
-#include "sample/sample_checks.h"
+#include "grid/sample_checks.h"
 
 namespace evenmesh {
 

@@ -8,7 +8,7 @@
 #include "gl/context.h"
 #include "gl/tape_field.h"
 #include "gl/tape_glsl.h"
-#include "sample/sample_checks.h"
+#include "grid/sample_checks.h"
 #include "shape/expression.h"
 #include "shape/expression_field.h"
 #include "shape/fields.h"

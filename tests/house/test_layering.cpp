@@ -19,24 +19,35 @@ using Names = std::set<std::string>;
 const fs::path root = EVENMESH_SOURCE_DIR;
 
 /// Rooms in the order of the pipeline; each sees itself and those before it.
-const std::vector<std::string> pipeline{"core", "geometry", "shape", "sample", "cvt", "connect", "refine", "pipeline"};
+const std::vector<std::string> pipeline{"core",     "geometry", "shape",   "grid",     "sample", "band",
+                                        "features", "cvt",      "connect", "topology", "refine", "pipeline"};
 
 /// Rooms beside the pipeline, and what they see besides themselves.
 const std::map<std::string, Names> beside{
     {"measure", {"core", "geometry"}},
     {"io", {"core", "geometry", "shape"}},
-    {"gl", {"core", "geometry", "shape", "sample"}},
+    {"gl", {"core", "geometry", "shape", "grid", "sample"}},
     {"scene", {"core", "geometry", "shape", "io"}},
     {"view", {"core", "geometry", "measure"}},
 };
 
 /// Public headers, and the room from which on they may be included.
 const std::map<std::string, std::string> public_headers{
-    {"error.h", "core"},          {"run.h", "core"},        {"mesh.h", "geometry"},
-    {"shape.h", "shape"},         {"measure.h", "measure"}, {"io.h", "io"},
-    {"mesh_shape.h", "pipeline"}, {"render.h", "view"},     {"points.h", "geometry"},
-    {"volume.h", "geometry"},     {"solid.h", "shape"},     {"scene.h", "scene"},
-    {"repair.h", "geometry"},     {"dexels.h", "shape"},    {"glsl.h", "gl"},
+    {"error.h", "core"},
+    {"execution_context.h", "core"},
+    {"mesh.h", "geometry"},
+    {"shape.h", "shape"},
+    {"measure.h", "measure"},
+    {"io.h", "io"},
+    {"mesh_shape.h", "pipeline"},
+    {"render.h", "view"},
+    {"points.h", "geometry"},
+    {"volume.h", "geometry"},
+    {"solid.h", "shape"},
+    {"scene.h", "scene"},
+    {"repair.h", "geometry"},
+    {"dexels.h", "shape"},
+    {"glsl.h", "gl"},
     {"raster.h", "gl"},
 };
 

@@ -5,8 +5,8 @@
 #include <ostream>
 #include <string>
 
+#include "grid/sample_checks.h"
 #include "pipeline/pipeline_testing.h"
-#include "sample/sample_checks.h"
 #include "shape/forms.h"
 
 namespace evenmesh::testing {

@@ -7,7 +7,7 @@
 
 #include "connect/label_complex.h"
 #include "core/random.h"
-#include "cvt/balance.h"
+#include "cvt/relax.h"
 #include "geometry/half_edges.h"
 #include "geometry/primitives.h"
 #include "refine/vertex_rings.h"

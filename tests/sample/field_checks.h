@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "evenmesh/error.h"
-#include "sample/sample_checks.h"
+#include "grid/sample_checks.h"
 #include "shape/forms.h"
 
 namespace evenmesh::testing {

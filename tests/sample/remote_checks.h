@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "evenmesh/solid.h"
-#include "sample/sample_checks.h"
+#include "grid/sample_checks.h"
 #include "shape/affine_field.h"
 #include "shape/forms.h"
 #include "shape/remote_field.h"

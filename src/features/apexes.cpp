@@ -1,0 +1,142 @@
+#include "features/apexes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <unordered_set>
+
+#include "grid/morton.h"
+
+namespace evenmesh {
+namespace {
+
+constexpr double around = 1;             ///< edges: so far the planes go through the tip, and nothing else comes near
+constexpr double most_residual = 0.005;  ///< of a plane's distance from the tip, root of the mean square, in edges
+constexpr double most_missing = 4;       ///< grid cells from the tip to the nearest sample: needles are seen cut off
+constexpr double apart = 0.5;            ///< edges: nearer to creases, and to each other, none are looked for
+constexpr std::size_t most_candidates = 2000;
+
+class TipFinder {
+ public:
+  TipFinder(const SampleSet& samples, double angle, double edge)
+      : samples_(samples), most_mean_(std::cos(angle * std::numbers::pi / 180)), edge_(edge) {}
+
+  /// The tip that is near to p, if there is one.
+  std::optional<Vec3> near(Vec3 p) const {
+    for (int step = 0; step < 3; ++step) {
+      PlaneQuadric planes;
+      each_around(p, [&](const Vec3& x, const Vec3& n) { planes.add(x - p, n); });
+      if (planes.rank() < 3) return {};  // a crease at most, or nothing
+      const Vec3 move = planes.minimum(3, 3);
+      if (!(norm(move) < around * edge_)) return {};
+      p += move;
+    }
+    return is_tip(p) ? std::optional(p) : std::nullopt;
+  }
+
+ private:
+  bool is_tip(const Vec3& p) const {
+    double count = 0, squares = 0, nearest = around * edge_;
+    Vec3 sum;
+    each_around(p, [&](const Vec3& x, const Vec3& n) {
+      const double off = dot(n, p - x);
+      count += 1, squares += off * off, sum += n;
+      nearest = std::min(nearest, norm(x - p));
+    });
+    return count > 0 && nearest < most_missing * samples_.grid.spacing && norm(sum) < most_mean_ * count &&
+           squares < most_residual * most_residual * edge_ * edge_ * count;
+  }
+
+  /// Calls visit(place, normal) for the samples nearer to p than `around`.
+  template <typename Visit>
+  void each_around(const Vec3& p, const Visit& visit) const {
+    const double reach = around * edge_, side = brick_size * samples_.grid.spacing;
+    std::array<std::int64_t, 3> lo{}, hi{};
+    for (int a = 0; a < 3; ++a) {
+      // Edges reach one cell beyond their brick.
+      const double at = p[a] - samples_.grid.origin[a];
+      lo[a] = std::max<std::int64_t>(0, std::int64_t(std::floor((at - reach - samples_.grid.spacing) / side)));
+      hi[a] = std::int64_t(std::floor((at + reach) / side));
+    }
+    for (std::int64_t k = lo[2]; k <= hi[2]; ++k)
+      for (std::int64_t j = lo[1]; j <= hi[1]; ++j)
+        for (std::int64_t i = lo[0]; i <= hi[0]; ++i) {
+          const std::uint64_t code = morton_code(std::uint64_t(i), std::uint64_t(j), std::uint64_t(k));
+          const auto block = std::lower_bound(samples_.blocks.begin(), samples_.blocks.end(), code,
+                                              [](const SampleBlock& b, std::uint64_t c) {
+                                                return morton_code(b.brick[0], b.brick[1], b.brick[2]) < c;
+                                              });
+          if (block == samples_.blocks.end() || morton_code(block->brick[0], block->brick[1], block->brick[2]) != code)
+            continue;
+          const Vec3 center = samples_.block_center(*block);
+          for (std::uint32_t s = block->begin; s < block->end; ++s) {
+            const Vec3 x = center + Vec3{samples_.x[s], samples_.y[s], samples_.z[s]};
+            if (squared_norm(x - p) < reach * reach) visit(x, unpack_normal(samples_.normal[s]));
+          }
+        }
+  }
+
+  const SampleSet& samples_;
+  double most_mean_;  ///< length of the mean normal
+  double edge_;
+};
+
+/// The surroundings of points, by cells of space.
+class Surroundings {
+ public:
+  explicit Surroundings(double side) : side_(side) {}
+  /// Points nearer to p than the cells' side are near, and some up to twice as far.
+  void add(const Vec3& p) {
+    const Cell home = cell(p);
+    if (home == last_) return;
+    last_ = home;
+    for (int d = 0; d < 27; ++d)
+      cells_.insert(key({home[0] + d % 3 - 1, home[1] + d / 3 % 3 - 1, home[2] + d / 9 - 1}));
+  }
+  bool near(const Vec3& p) const { return cells_.contains(key(cell(p))); }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  Cell cell(const Vec3& p) const {
+    return {std::int64_t(std::floor(p.x / side_)), std::int64_t(std::floor(p.y / side_)),
+            std::int64_t(std::floor(p.z / side_))};
+  }
+  static std::uint64_t key(const Cell& c) {
+    constexpr std::int64_t middle = 1 << 20;
+    return std::uint64_t(c[0] + middle) << 42 ^ std::uint64_t(c[1] + middle) << 21 ^ std::uint64_t(c[2] + middle);
+  }
+
+  double side_;
+  Cell last_{INT64_MIN, 0, 0};
+  std::unordered_set<std::uint64_t> cells_;
+};
+
+}  // namespace
+
+std::vector<Vec3> find_tips(const SampleSet& samples, std::span<const CreaseNode> nodes, const Creases& creases,
+                            double angle, double edge, Run& run) {
+  const Vec3 origin = samples.grid.origin;
+  Surroundings taken(apart * edge);
+  for (const CreaseChain& chain : creases.chains)
+    for (const Vec3& p : chain.points) taken.add(p - origin);
+  std::vector<Vec3> candidates;
+  for (const CreaseNode& node : nodes) {
+    if (taken.near(node.place - origin)) continue;
+    taken.add(node.place - origin);
+    candidates.push_back(node.place);
+    if (candidates.size() > most_candidates) return {};
+  }
+  const TipFinder finder(samples, angle, edge);
+  std::vector<std::optional<Vec3>> found(candidates.size());
+  parallel_for(run, candidates.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) found[c] = finder.near(candidates[c]);
+  });
+  std::vector<Vec3> tips;
+  for (const auto& tip : found)
+    if (tip && std::none_of(tips.begin(), tips.end(), [&](const Vec3& q) { return norm(q - *tip) < around * edge; }))
+      tips.push_back(*tip);
+  return tips;
+}
+
+}  // namespace evenmesh

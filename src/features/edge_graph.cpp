@@ -1,0 +1,179 @@
+#include "features/edge_graph.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "grid/brick_union.h"
+
+namespace evenmesh {
+
+void PlaneQuadric::add(const Vec3& p, const Vec3& n) {
+  count_ += 1, sum_ += p, b_ += dot(n, p) * n;
+  a_[0] += n.x * n.x, a_[1] += n.x * n.y, a_[2] += n.x * n.z;
+  a_[3] += n.y * n.y, a_[4] += n.y * n.z, a_[5] += n.z * n.z;
+}
+
+void PlaneQuadric::add(const PlaneQuadric& other) {
+  count_ += other.count_, sum_ += other.sum_, b_ += other.b_;
+  for (std::size_t i = 0; i < 6; ++i) a_[i] += other.a_[i];
+}
+
+namespace {
+
+constexpr double smallest_share = 0.01;  // of the largest eigenvalue
+
+Eigen::Matrix3d symmetric(const std::array<double, 6>& a) {
+  Eigen::Matrix3d m;
+  m << a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5];
+  return m;
+}
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(const Eigen::Matrix3d& a) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(a);
+  return solver;
+}
+
+}  // namespace
+
+Vec3 PlaneQuadric::minimum(int least, int most) const {
+  const Eigen::Matrix3d a = symmetric(a_);
+  const Vec3 m = mean();
+  const Eigen::Vector3d at(m.x, m.y, m.z), residual = Eigen::Vector3d(b_.x, b_.y, b_.z) - a * at;
+  const auto solver = solved(a);
+  const auto& values = solver.eigenvalues();
+  Eigen::Vector3d x = at;
+  for (int rank = 0; rank < most; ++rank) {
+    const int i = 2 - rank;  // ascending
+    if (!(values[i] > (rank < least ? 1e-6 : smallest_share) * values[2])) break;
+    x += solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(residual) / values[i]);
+  }
+  return {x.x(), x.y(), x.z()};
+}
+
+int PlaneQuadric::rank() const {
+  const Eigen::Vector3d values = solved(symmetric(a_)).eigenvalues();
+  return static_cast<int>((values.array() > smallest_share * values[2]).count());
+}
+
+namespace {
+
+/// A sharp link as a cube sees it; the cube on the other side of the face has the same key.
+struct HalfLink {
+  std::uint64_t key;  ///< lower sample << 32 | higher sample
+  std::uint32_t node;
+  bool sharp;
+  friend bool operator<(const HalfLink& a, const HalfLink& b) {
+    return a.key != b.key ? a.key < b.key : a.node < b.node;
+  }
+};
+
+struct BrickNodes {
+  std::vector<CreaseNode> nodes;
+  std::vector<HalfLink> links;  ///< nodes numbered within the brick
+  std::uint32_t loops = 0;      ///< creased or not
+
+  /// Even where several creases meet most of the surface around is smooth; on fractals most of it is not.
+  bool rough() const { return nodes.size() > 32 && 2 * nodes.size() > loops; }
+};
+
+class Finder {
+ public:
+  Finder(const SampleSet& samples, double sharp, double weak)
+      : samples_(samples),
+        sharp_(sharp),
+        weak_(weak),
+        safe_step_(static_cast<int>(32767 * std::acos(weak) / (3 * std::numbers::sqrt2)) - 2) {}
+
+  void visit(const CubeBrick& brick, const std::uint32_t* loop, int n, BrickNodes& found) const {
+    ++found.loops;
+    const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
+    bool smooth = true;
+    for (int i = 0; i < n; ++i) smooth &= is_nearly_same(samples_.normal[loop[i]], samples_.normal[loop[after(i)]]);
+    if (smooth) return;
+    std::array<Vec3, 12> normal;
+    for (int i = 0; i < n; ++i) normal[i] = unpack_normal(samples_.normal[loop[i]]);
+    bool creased = false;
+    for (int i = 0; i < n; ++i) creased |= dot(normal[i], normal[after(i)]) < weak_;
+    if (!creased) return;
+    const auto node = static_cast<std::uint32_t>(found.nodes.size());
+    for (int i = 0; i < n; ++i)
+      if (const double cosine = dot(normal[i], normal[after(i)]); cosine < weak_) {
+        const auto [s, t] = std::minmax(loop[i], loop[after(i)]);
+        found.links.push_back({std::uint64_t{s} << 32 | t, node, cosine < sharp_});
+      }
+    found.nodes.push_back(make_node(brick, loop, normal.data(), n));
+  }
+
+ private:
+  /// Whether the angle is surely below the limit: in the octahedral map a step of length d is an angle of 3·d at most.
+  bool is_nearly_same(PackedNormal a, PackedNormal b) const {
+    const int u = int(a.bits & 0xffff) - int(b.bits & 0xffff), v = int(a.bits >> 16) - int(b.bits >> 16);
+    return std::abs(u) < safe_step_ && std::abs(v) < safe_step_;
+  }
+
+  CreaseNode make_node(const CubeBrick& brick, const std::uint32_t* loop, const Vec3* normal, int n) const {
+    CreaseNode node;
+    double weight = 0, area = 0;
+    Box box;
+    for (int i = 0; i < n; ++i) {
+      const Vec3 p = position(brick, loop[i]) - samples_.grid.origin;
+      node.planes.add(p, normal[i]);
+      box.add(p);
+      weight += samples_.area[loop[i]];
+      area += sample_area(normal[i], static_cast<int>(samples_.edge[loop[i]].axis()), samples_.grid.spacing);
+    }
+    // Weights are squared densities (weigh_by_density).
+    if (const double ratio = weight / area; std::abs(ratio - 1) > 1e-3) node.pace = std::sqrt(std::sqrt(ratio));
+    node.place = node.planes.minimum(2, 2);
+    const double margin = 0.75 * samples_.grid.spacing;
+    for (int a = 0; a < 3; ++a) node.place[a] = std::clamp(node.place[a], box.lo[a] - margin, box.hi[a] + margin);
+    node.place += samples_.grid.origin;
+    return node;
+  }
+
+  Vec3 position(const CubeBrick& brick, std::uint32_t s) const {
+    for (const std::int64_t b : brick.block) {
+      if (b < 0) continue;
+      const SampleBlock& block = samples_.blocks[static_cast<std::size_t>(b)];
+      if (s >= block.begin && s < block.end)
+        return samples_.block_center(block) + Vec3{samples_.x[s], samples_.y[s], samples_.z[s]};
+    }
+    return {};
+  }
+
+  const SampleSet& samples_;
+  double sharp_, weak_;
+  int safe_step_;  ///< of either coordinate of packed normals
+};
+
+}  // namespace
+
+CreaseGraph find_crease_graph(const SampleSet& samples, double sharp, double weak, Run& run) {
+  const auto bricks = cube_bricks(samples, run);
+  std::vector<BrickNodes> of_brick(bricks.size());
+  const Finder finder(samples, sharp, weak);
+  for_loops(samples, bricks, run,
+            [&](std::size_t b, const std::uint32_t* loop, int n) { finder.visit(bricks[b], loop, n, of_brick[b]); });
+  CreaseGraph graph;
+  std::vector<HalfLink> halves;
+  for (BrickNodes& found : of_brick) {
+    if (found.rough()) {
+      graph.nodes.push_back(found.nodes.front());
+      continue;
+    }
+    const auto first = static_cast<std::uint32_t>(graph.nodes.size());
+    graph.nodes.insert(graph.nodes.end(), found.nodes.begin(), found.nodes.end());
+    for (const HalfLink& link : found.links) halves.push_back({link.key, first + link.node, link.sharp});
+  }
+  parallel_sort(run, halves);
+  for (std::size_t i = 0; i + 1 < halves.size(); ++i)
+    if (halves[i].key == halves[i + 1].key) {
+      graph.links.push_back({halves[i].node, halves[i + 1].node});
+      graph.sharp.push_back(halves[i].sharp);
+    }
+  return graph;
+}
+
+}  // namespace evenmesh

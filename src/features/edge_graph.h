@@ -1,0 +1,50 @@
+#pragma once
+/// Which grid cubes a crease passes through, and from which to which it goes.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/parallel.h"
+#include "grid/sample_set.h"
+
+namespace evenmesh {
+
+/// Squared distances from planes: Σ (n·(x − p))².
+class PlaneQuadric {
+ public:
+  void add(const Vec3& p, const Vec3& n);
+  void add(const PlaneQuadric& other);
+  Vec3 mean() const { return sum_ / count_; }
+  /// The point nearest to the mean of the p's among those where the planes meet as well as they can. Directions in
+  /// which they hardly differ do not count, but the `least` strongest ones do; at most `most` do.
+  Vec3 minimum(int least, int most) const;
+  /// In how many directions the planes differ by more than hardly.
+  int rank() const;
+
+ private:
+  double count_ = 0;
+  Vec3 sum_, b_;
+  std::array<double, 6> a_{};  ///< upper triangle
+};
+
+struct CreaseNode {
+  Vec3 place;           ///< of the crease in one cube, model units
+  PlaneQuadric planes;  ///< of the cube's crossings, about the grid's origin
+  double pace = 1;      ///< 1 / wanted vertex spacing, compared with the mean: 1 where the density is uniform
+};
+
+/// One node for every loop of crossings in a cube that a crease passes through, one link for every face between two.
+/// Where most of a brick is creased, as on fractals or at the tip of a needle, there is one node and no link.
+struct CreaseGraph {
+  std::vector<CreaseNode> nodes;
+  std::vector<std::array<std::uint32_t, 2>> links;
+  std::vector<char> sharp;  ///< by link: beyond the angle asked for
+};
+
+/// @param sharp  cosine of the angle between normals from which on there is a crease
+/// @param weak   cosine of a smaller angle: what is between the two may continue a crease
+/// Guarantee: same graph for any number of threads. Cost: about 50 ns per sample and core.
+CreaseGraph find_crease_graph(const SampleSet& samples, double sharp, double weak, Run& run);
+
+}  // namespace evenmesh

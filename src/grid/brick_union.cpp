@@ -1,0 +1,47 @@
+#include "grid/brick_union.h"
+
+#include <algorithm>
+
+namespace evenmesh {
+
+BrickUnion::BrickUnion(const SampleSet& samples, const std::vector<CubeBrick>& bricks, const Run& run)
+    : own_(bricks.size()), parent_(samples.size()), across_(bricks.size()) {
+  for (std::size_t b = 0; b < bricks.size(); ++b)
+    if (const std::int64_t block = bricks[b].block[0]; block >= 0)
+      own_[b] = {samples.blocks[block].begin, samples.blocks[block].end};
+  parallel_for(run, parent_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) parent_[i] = static_cast<std::uint32_t>(i);
+  });
+}
+
+void BrickUnion::flatten(const Run& run) {
+  parallel_for(run, parent_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::uint32_t root = static_cast<std::uint32_t>(i);
+      while (parent_[root] != root) root = parent_[root];
+      parent_[i] = root;  // roots stay roots: no other thread's walk is misled
+    }
+  });
+}
+
+void BrickUnion::settle(const Run& run) {
+  flatten(run);
+  parallel_for(run, across_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      // Few roots meet in one brick: looking through the pairs found so far, the latest first, is fast.
+      auto& pairs = across_[b];
+      auto last = pairs.begin();
+      for (const auto& [s, t] : pairs) {
+        const std::pair<std::uint32_t, std::uint32_t> pair = std::minmax({parent_[s], parent_[t]});
+        if (pair.first == pair.second) continue;
+        if (std::find(std::make_reverse_iterator(last), pairs.rend(), pair) == pairs.rend()) *last++ = pair;
+      }
+      pairs.erase(last, pairs.end());
+    }
+  });
+  for (const auto& pairs : across_)
+    for (const auto& [s, t] : pairs) unite(parent_, s, t);
+  across_.clear();
+}
+
+}  // namespace evenmesh

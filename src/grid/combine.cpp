@@ -1,0 +1,148 @@
+#include "grid/combine.h"
+
+#include <span>
+
+#include "grid/blocks.h"
+#include "grid/inside_runs.h"
+#include "grid/morton.h"
+
+namespace evenmesh {
+namespace {
+
+constexpr std::uint32_t none = 0xffffffffu;
+
+/// One brick of the result, and the blocks of both operands there.
+struct Pair {
+  std::uint64_t code = 0;
+  std::uint32_t a = none, b = none;
+};
+
+std::uint64_t code_of(const SampleBlock& block) {
+  return morton_code(block.brick[0], block.brick[1], block.brick[2]);
+}
+
+std::vector<Pair> pairs_of(const SampleSet& a, const SampleSet& b) {
+  std::vector<Pair> pairs;
+  std::uint32_t i = 0, j = 0;
+  while (i < a.blocks.size() || j < b.blocks.size()) {
+    const std::uint64_t of_a = i < a.blocks.size() ? code_of(a.blocks[i]) : ~std::uint64_t{0};
+    const std::uint64_t of_b = j < b.blocks.size() ? code_of(b.blocks[j]) : ~std::uint64_t{0};
+    Pair pair{std::min(of_a, of_b), none, none};
+    if (of_a == pair.code) pair.a = i++;
+    if (of_b == pair.code) pair.b = j++;
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+/// A sample of one of the operands, perhaps turned around.
+struct Taken {
+  std::uint32_t index = 0;
+  bool from_b = false;
+};
+
+class Combiner {
+ public:
+  Combiner(const SampleSet& a, const SampleSet& b, Boolean operation, const Run& run)
+      : a_(a), b_(b), operation_(operation), in_a_(a, run), in_b_(b, run) {}
+
+  /// Appends the samples that a brick of the result keeps, in order.
+  void take(const Pair& pair, std::vector<Taken>& taken) const {
+    taken.clear();
+    std::uint32_t i = pair.a == none ? 0 : a_.blocks[pair.a].begin, j = pair.b == none ? 0 : b_.blocks[pair.b].begin;
+    const std::uint32_t end_a = pair.a == none ? 0 : a_.blocks[pair.a].end;
+    const std::uint32_t end_b = pair.b == none ? 0 : b_.blocks[pair.b].end;
+    const auto brick = morton_decode(pair.code);
+    while (i < end_a || j < end_b) {
+      const unsigned of_a = i < end_a ? a_.edge[i].bits >> 1 : ~0u, of_b = j < end_b ? b_.edge[j].bits >> 1 : ~0u;
+      if (of_a < of_b) {
+        if (keeps_a(in(in_b_, brick, a_.edge[i]))) taken.push_back({i, false});
+        ++i;
+      } else if (of_b < of_a) {
+        if (keeps_b(in(in_a_, brick, b_.edge[j]))) taken.push_back({j, true});
+        ++j;
+      } else {
+        take_one(i++, j++, taken);
+      }
+    }
+  }
+
+  bool turns_b() const { return operation_ == Boolean::subtract; }
+
+ private:
+  static bool in(const InsideRuns& runs, const std::array<std::uint16_t, 3>& brick, EdgeCode edge) {
+    const auto at = [&](std::size_t axis, unsigned cell) { return std::int32_t(brick[axis] * brick_size + cell); };
+    return runs(at(0, edge.i()), at(1, edge.j()), at(2, edge.k()));
+  }
+  /// Whether a crossing of one operand stays where the whole edge is inside the other, or outside.
+  bool keeps_a(bool in_b) const { return operation_ == Boolean::intersect ? in_b : !in_b; }
+  bool keeps_b(bool in_a) const { return operation_ == Boolean::unite ? !in_a : in_a; }
+
+  /// Of two crossings of one edge that run the same way, the one that decides.
+  void take_one(std::uint32_t i, std::uint32_t j, std::vector<Taken>& taken) const {
+    const EdgeCode edge = a_.edge[i];
+    const bool leaves_a = edge.lower_end_inside(), leaves_b = b_.edge[j].lower_end_inside() != turns_b();
+    if (leaves_a != leaves_b) return;
+    const auto& along_a = edge.axis() == 0 ? a_.x : edge.axis() == 1 ? a_.y : a_.z;
+    const auto& along_b = edge.axis() == 0 ? b_.x : edge.axis() == 1 ? b_.y : b_.z;
+    const float at_a = along_a[i], at_b = along_b[j];
+    const bool latest = (operation_ == Boolean::unite) == leaves_a;
+    const bool b_decides = latest ? at_b > at_a : at_b < at_a;
+    taken.push_back(b_decides ? Taken{j, true} : Taken{i, false});
+  }
+
+  const SampleSet &a_, &b_;
+  Boolean operation_;
+  InsideRuns in_a_, in_b_;
+};
+
+void copy_sample(const SampleSet& from, std::uint32_t index, bool turned, SampleSet& to, std::uint32_t at) {
+  to.x[at] = from.x[index], to.y[at] = from.y[index], to.z[at] = from.z[index];
+  to.area[at] = from.area[index];
+  to.normal[at] = from.normal[index];
+  to.edge[at] = from.edge[index];
+  if (!turned) return;
+  to.edge[at].bits ^= 1;
+  to.normal[at] = opposite(from.normal[index]);
+}
+
+}  // namespace
+
+SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, const Run& run) {
+  const Combiner combiner(a, b, operation, run);
+  const std::vector<Pair> pairs = pairs_of(a, b);
+  std::vector<std::uint32_t> count(pairs.size());
+  parallel_for(run, pairs.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<Taken> taken;
+    for (std::size_t p = begin; p < end; ++p) {
+      combiner.take(pairs[p], taken);
+      count[p] = static_cast<std::uint32_t>(taken.size());
+    }
+  });
+  SampleSet set;
+  set.grid = a.grid;
+  set.disagreements = a.disagreements + b.disagreements, set.unresolved = a.unresolved + b.unresolved;
+  set.cut_by_bounds = a.cut_by_bounds || b.cut_by_bounds;
+  std::vector<std::size_t> pair_of_block;
+  std::uint32_t total = 0;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    if (count[p] == 0) continue;
+    set.blocks.push_back({total, total + count[p], morton_decode(pairs[p].code), {}});
+    pair_of_block.push_back(p);
+    total += count[p];
+  }
+  resize_samples(set, total, false, run);
+  parallel_for(run, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<Taken> taken;
+    for (std::size_t block = begin; block < end; ++block) {
+      combiner.take(pairs[pair_of_block[block]], taken);
+      std::uint32_t at = set.blocks[block].begin;
+      for (const Taken& t : taken) copy_sample(t.from_b ? b : a, t.index, t.from_b && combiner.turns_b(), set, at++);
+    }
+  });
+  mark_axes(set, run);
+  sum_area(set, run);
+  return set;
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,171 @@
+#include "pipeline/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.h"
+#include "grid/surface_components.h"
+#include "sample/sample.h"
+
+namespace evenmesh {
+namespace {
+
+constexpr double wanted_alpha = 100, least_alpha = 50;
+constexpr std::size_t most_cells = 8192;
+constexpr std::size_t scouting_cells = 96;
+constexpr std::size_t most_specks = 16;     ///< of a surface that is not taken for a fractal
+constexpr double least_cells_across = 1.2;  ///< thinner parts may lie between the grid points
+
+struct Pairs {
+  std::vector<std::pair<float, float>> curvature, thickness;  ///< (value, area)
+};
+
+/// Compares each sample of a block with a few others of it.
+void compare_samples(const SampleSet& samples, const SampleBlock& block, Pairs& pairs) {
+  const double h = samples.grid.spacing;
+  const auto position = [&](std::uint32_t i) { return Vec3{samples.x[i], samples.y[i], samples.z[i]}; };
+  for (std::uint32_t i = block.begin; i < block.end; i += 3) {
+    const Vec3 n = unpack_normal(samples.normal[i]), p = position(i);
+    double bend = -1, nearest_back = std::numeric_limits<double>::infinity();
+    for (std::uint32_t j = block.begin; j < block.end; j += 2) {
+      if (j == i) continue;
+      const Vec3 m = unpack_normal(samples.normal[j]), d = position(j) - p;
+      const double distance = norm(d), facing = dot(n, m);
+      // The same sheet, two to four cells apart: far enough for the angle to mean something.
+      if (facing > 0.2 && distance > 1.8 * h && distance < 4 * h && std::abs(dot(d, n)) < 0.5 * distance)
+        bend = std::max(bend, norm(n - m) / distance);
+      // The other side of the solid: behind the sample and facing away.
+      if (facing < -0.7 && dot(d, n) < -0.7 * distance) nearest_back = std::min(nearest_back, distance);
+    }
+    if (bend >= 0) pairs.curvature.push_back({static_cast<float>(bend), samples.area[i]});
+    pairs.thickness.push_back({static_cast<float>(nearest_back), samples.area[i]});
+  }
+}
+
+/// The value below which `share` of the area lies.
+double quantile(std::vector<std::pair<float, float>>& values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  double total = 0, passed = 0;
+  for (const auto& v : values) total += v.second;
+  for (const auto& v : values)
+    if ((passed += v.second) >= share * total) return v.first;
+  return values.back().first;
+}
+
+}  // namespace
+
+double edge_length_of(double area, double vertices) {
+  return std::sqrt(2 * area / (std::numbers::sqrt3 * vertices));
+}
+double vertices_of(double area, double edge_length) {
+  return 2 * area / (std::numbers::sqrt3 * edge_length * edge_length);
+}
+
+SurfaceScale measure_scale(const SampleSet& coarse, Run& run) {
+  std::vector<Pairs> of_chunk((coarse.blocks.size() + 63) / 64);
+  parallel_tasks(run, of_chunk.size(), [&](std::size_t c) {
+    for (std::size_t b = 64 * c; b < std::min(coarse.blocks.size(), 64 * (c + 1)); ++b)
+      compare_samples(coarse, coarse.blocks[b], of_chunk[c]);
+  });
+  Pairs all;
+  for (const Pairs& p : of_chunk) {
+    all.curvature.insert(all.curvature.end(), p.curvature.begin(), p.curvature.end());
+    all.thickness.insert(all.thickness.end(), p.thickness.begin(), p.thickness.end());
+  }
+  const double h = coarse.grid.spacing, bend = quantile(all.curvature, 0.9);
+  SurfaceScale scale;
+  scale.area = coarse.total_area;
+  scale.samples_per_area = static_cast<double>(coarse.size()) * h * h / coarse.total_area;
+  scale.curvature_radius = bend > 0 ? 1 / bend : std::numeric_limits<double>::infinity();
+  scale.thickness = quantile(all.thickness, 0.02);
+  return scale;
+}
+
+namespace {
+
+std::size_t count_specks(const SampleSet& samples, Run& run) {
+  const double speck = 8 * samples.grid.spacing * samples.grid.spacing;
+  const auto parts = surface_parts(samples, run);
+  return static_cast<std::size_t>(
+      std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < speck; }));
+}
+
+}  // namespace
+
+SurfaceScale scout_scale(const Shape& shape, std::size_t finest, Run& run) {
+  finest = std::max(finest, 4 * scouting_cells);
+  for (std::size_t cells = scouting_cells;; cells *= 2) {
+    const bool last = 2 * cells > finest;
+    try {
+      const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, cells), run);
+      SurfaceScale scale = measure_scale(samples, run);
+      scale.specks = count_specks(samples, run);
+      if (last || scale.thickness > least_cells_across * samples.grid.spacing) return scale;
+    } catch (const UnusableInput&) {
+      if (last) throw;
+    }
+  }
+}
+
+Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const MeshOptions& options,
+                         std::vector<Notice>& notices) {
+  const double longest = bounds.longest_side();
+  const auto resolution_for = [&](double samples) {  // cells along the longest side that give so many samples
+    return longest / std::sqrt(scale.area * scale.samples_per_area / samples);
+  };
+  const auto samples_at = [&](double resolution) {
+    const double h = longest / resolution;
+    return scale.area * scale.samples_per_area / (h * h);
+  };
+
+  double vertices = 0;
+  if (options.vertices) {
+    vertices = static_cast<double>(*options.vertices);
+  } else if (options.edge_length) {
+    vertices = std::round(vertices_of(scale.area, *options.edge_length));
+  } else {
+    const double diagonal = bounds.diagonal();
+    double edge = std::min(0.35 * scale.curvature_radius, 1.5 * scale.thickness);
+    edge = std::clamp(edge, diagonal / 500, diagonal / 40);
+    vertices = std::clamp(std::round(vertices_of(scale.area, edge)), 200.0, 1e6);
+    notices.push_back(
+        {false,
+         fmt::format("no -n or -l given: {:.0f} vertices, from area {:.4g}, curvature radius {:.3g}, thinnest part {}",
+                     vertices, scale.area, scale.curvature_radius,
+                     std::isfinite(scale.thickness) ? fmt::format("{:.3g}", scale.thickness) : "not thin")});
+  }
+  vertices = std::max(vertices, 4.0);
+
+  double resolution = 0;
+  if (options.resolution) {
+    resolution = static_cast<double>(*options.resolution);
+  } else {
+    resolution = resolution_for(wanted_alpha * 1.02 * vertices);
+    // Thin parts need grid points inside, as long as that costs no more than four times the samples. Where there is
+    // dust, thin parts are thin at every scale.
+    if (std::isfinite(scale.thickness) && scale.thickness > 0 && scale.specks <= most_specks)
+      resolution = std::clamp(2.5 * longest / scale.thickness, resolution, 2 * resolution);
+    resolution = std::ceil(std::max(resolution, 24.0));
+  }
+  if (resolution > most_cells) {
+    notices.push_back(
+        {false, fmt::format("the grid ends at {} cells along the longest side: fewer than {} samples per seed",
+                            most_cells, wanted_alpha)});
+    resolution = most_cells;
+  }
+  const double most_vertices = std::max(4.0, std::floor(samples_at(resolution) / least_alpha));
+  if (vertices > most_vertices) {
+    notices.push_back(
+        {false,
+         fmt::format("{:.0f} vertices would have fewer than {} samples each at resolution {:.0f}; meshing with {:.0f}",
+                     vertices, least_alpha, resolution, most_vertices)});
+    vertices = most_vertices;
+  }
+  return {static_cast<std::size_t>(vertices), static_cast<std::size_t>(resolution)};
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,63 @@
+#include "sample/extra_directions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "evenmesh/repair.h"
+
+namespace evenmesh {
+namespace {
+
+/// Whether a point, in cells from the grid's origin, is inside by the nearest ray of one axis.
+bool inside_along(const TriDexel& rays, std::size_t axis, const std::array<double, 3>& at) {
+  const double p = std::round(at[std::size_t(dexel_p_axis[axis])]), q = std::round(at[std::size_t(dexel_q_axis[axis])]);
+  if (!(p >= 0 && q >= 0 && p < 65536 && q < 65536)) return false;
+  bool inside = false;
+  for (const DexelCrossing& c : rays.axes[axis].ray(static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(q))) {
+    if (c.cell + double(c.t) > at[axis]) break;
+    inside = c.enters;
+  }
+  return inside;
+}
+
+}  // namespace
+
+Witnesses::Witnesses(const Mesh& mesh, double spacing, Winding winding, Run& run) {
+  for (const Affine& turn : {Affine::rotate({1, 2, 3}, 41), Affine::rotate({-2, 1, 1.4}, 73)}) {
+    Mesh turned = mesh;
+    for (Vec3& v : turned.vertices) v = turn(v);
+    const Box box = turned.bounds();
+    const double cells = std::clamp(std::ceil(box.longest_side() / spacing), 8.0, 8192.0);
+    frames_.push_back({turn, scan_rays(turned, make_grid(box, static_cast<std::size_t>(cells)), run, winding)});
+  }
+}
+
+int Witnesses::inside(const Vec3& p) const {
+  int count = 0;
+  for (const Frame& frame : frames_) {
+    const Grid& grid = frame.rays.grid;
+    const Vec3 at = (frame.turn(p) - grid.origin) / grid.spacing;
+    for (std::size_t axis = 0; axis < 3; ++axis) count += inside_along(frame.rays, axis, {at.x, at.y, at.z});
+  }
+  return count;
+}
+
+double agreement(const TriDexel& rays) {
+  std::size_t agreed = 0, any = 0;
+  const auto& size = rays.grid.size;
+  for (std::uint32_t k = 0; k < size[2]; ++k)
+    for (std::uint32_t j = 0; j < size[1]; ++j)
+      for (std::uint32_t i = 0; i < size[0]; ++i) {
+        int count = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          count += inside_along(rays, axis, {double(i), double(j), double(k)});
+        agreed += count == 3, any += count > 0;
+      }
+  return any == 0 ? 0 : static_cast<double>(agreed) / static_cast<double>(any);
+}
+
+double solidity(const Mesh& mesh, Run& run) {
+  return with_threads(run, [&] { return agreement(scan_rays(mesh, make_grid(mesh.bounds(), 64), run)); });
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,34 @@
+#pragma once
+/// What rays of other directions say where those of the grid disagree.
+
+#include <vector>
+
+#include "evenmesh/solid.h"
+#include "grid/tri_dexel.h"
+
+namespace evenmesh {
+
+/// A mesh scanned in turned frames: six more directions for any point.
+class Witnesses {
+ public:
+  static constexpr int directions = 6;
+
+  /// Cost: that of two scans.
+  Witnesses(const Mesh& mesh, double spacing, Winding winding, Run& run);
+
+  /// In how many of the directions the ray next to p has p inside. Cost: about 0.3 µs.
+  int inside(const Vec3& p) const;
+
+ private:
+  struct Frame {
+    Affine turn;
+    TriDexel rays;
+  };
+  std::vector<Frame> frames_;
+};
+
+/// The share of the grid points inside by one direction's rays that are inside by all three's; 0 where none is.
+/// @param rays  without a vote
+double agreement(const TriDexel& rays);
+
+}  // namespace evenmesh

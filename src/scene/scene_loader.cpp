@@ -1,0 +1,93 @@
+#include "scene/scene_loader.h"
+
+#include <system_error>
+#include <utility>
+
+#include "evenmesh/error.h"
+#include "evenmesh/io.h"
+
+namespace evenmesh {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// In quotes, without what would confuse a terminal.
+std::string shown(const fs::path& path) {
+  std::string text = path.string();
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
+  constexpr std::size_t longest = 200;  // the end tells more
+  if (text.size() > longest) text = "…" + text.substr(text.size() - longest);
+  return "'" + text + "'";
+}
+
+}  // namespace
+
+fs::path Workshop::file(const std::string& name) const {
+  if (name.empty() || name.find('\0') != std::string::npos) throw UnusableInput("needs the name of a file");
+  const fs::path path = (folder_ / name).lexically_normal();
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) {
+    throw UnusableInput("there is no file " + shown(path) + "; paths are relative to the folder of the scene");
+  }
+  // Pipes and devices could keep a reader waiting for ever.
+  if (!fs::is_regular_file(status)) throw UnusableInput(shown(path) + " is not a regular file");
+  return path;
+}
+
+template <typename Read>
+Shape Workshop::once(std::map<fs::path, Shape>& known, const std::string& name, const Read& read) {
+  const fs::path path = file(name);
+  auto found = known.find(path);
+  if (found == known.end()) found = known.emplace(path, read(path, path.filename().string())).first;
+  return found->second;
+}
+
+Shape Workshop::mesh_file(const std::string& name) {
+  return once(meshes_, name, [&](const fs::path& path, const std::string& title) {
+    if (const std::string ending = path.extension().string(); ending == ".csg" || ending == ".json") {
+      throw UnusableInput(title +
+                          ": is a scene, not a mesh; copy what it holds into this one, or make a mesh of it first");
+    }
+    return shape_from_mesh(read_mesh(path, run_), title);
+  });
+}
+
+Shape Workshop::point_file(const std::string& name) {
+  return once(points_, name, [&](const fs::path& path, const std::string& title) {
+    return shape_from_points(read_points(path, run_), title);
+  });
+}
+
+Shape Workshop::dexel_file(const std::string& name) {
+  return once(dexels_, name, [&](const fs::path& path, const std::string& title) {
+    return shape_from_dexels(read_dexels(path, run_), title);
+  });
+}
+
+Shape Workshop::shader_file(const std::string& name, const GlslOptions& options) const {
+  return read_glsl(file(name), options);
+}
+
+Shape Workshop::raster_files(const std::string& vertex, const std::string& fragment, RasterOptions options) const {
+  const auto path = [&](const std::string& name) { return name == "default" ? fs::path() : file(name); };
+  return read_raster(path(vertex), path(fragment), std::move(options));
+}
+
+Shape Workshop::placed(const Shape& shape, const Affine* placement) {
+  if (placement == nullptr) return shape;
+  if (const Mesh* mesh = shape.mesh()) spend(mesh->triangles.size());
+  if (const PointCloud* cloud = shape.points()) spend(cloud->points.size());
+  return transformed(shape, *placement);
+}
+
+void Workshop::spend(std::uint64_t count) {
+  if (count > left_) {
+    throw UnusableInput("asks for more triangles than a scene may have (100,000,000); split it, or use fewer copies");
+  }
+  left_ -= count;
+}
+
+}  // namespace evenmesh

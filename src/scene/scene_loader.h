@@ -1,0 +1,58 @@
+#pragma once
+/// What both readers of scenes share: files beside the scene, the budget, how shapes are placed.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "evenmesh/execution_context.h"
+#include "evenmesh/scene.h"
+#include "evenmesh/solid.h"
+#include "io/source.h"
+
+namespace evenmesh {
+
+/// Where shapes of one scene come from. Throws UnusableInput without the scene's name; readers add it, and the place.
+class Workshop {
+ public:
+  Workshop(std::filesystem::path folder, const SceneLimits& limits, Run& run)
+      : folder_(std::move(folder)), left_(limits.triangles), run_(run) {}
+
+  /// The solid in a mesh file, or the surface of a point file; read once however often it is asked for.
+  /// @param name  relative to the scene's folder, or absolute
+  Shape mesh_file(const std::string& name);
+  Shape point_file(const std::string& name);
+  Shape dexel_file(const std::string& name);
+  /// The solid of a shader file.
+  Shape shader_file(const std::string& name, const GlslOptions& options) const;
+  /// The solid that two shader files draw; "default" is none.
+  Shape raster_files(const std::string& vertex, const std::string& fragment, RasterOptions options) const;
+
+  /// The shape moved; `placement` nullptr: where it is.
+  Shape placed(const Shape& shape, const Affine* placement);
+
+  /// Triangles or points about to be made. A few bytes could otherwise ask for more than fits into any memory.
+  void spend(std::uint64_t count);
+
+  Run& run() const { return run_; }
+
+ private:
+  std::filesystem::path file(const std::string& name) const;
+  /// What read(path, title) makes of a file, the first time it is asked for.
+  template <typename Read>
+  Shape once(std::map<std::filesystem::path, Shape>& known, const std::string& name, const Read& read);
+
+  std::filesystem::path folder_;
+  std::uint64_t left_;
+  Run& run_;
+  std::map<std::filesystem::path, Shape> meshes_, points_, dexels_;
+};
+
+/// Reads a JSON scene. @throws UnusableInput, NotAvailable
+Shape read_json_scene(const Source& source, Workshop& workshop, const SceneLimits& limits);
+/// Reads an OpenSCAD .csg file. @throws UnusableInput
+Shape read_csg_scene(const Source& source, Workshop& workshop, const SceneLimits& limits);
+
+}  // namespace evenmesh
