@@ -25,9 +25,9 @@ int main(int argc, char** argv) {
       RandomSolids random(static_cast<std::uint64_t>(seed));
       const Shape shape = random.tree();
       const std::size_t vertices = random.vertices();
-      Run run;
+      ExecutionContext context;
       options.vertices = vertices;
-      const MeshResult result = mesh_shape(shape, options, run);
+      const MeshResult result = mesh_shape(shape, options, context);
       const MeshQuality& q = result.report.quality;
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       const bool good = q.closed() && q.two_manifold() && q.oriented() && result.report.self_intersections == 0 &&

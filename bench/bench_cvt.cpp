@@ -26,13 +26,13 @@ const Surface& surface(std::size_t count) {
   auto [it, is_new] = surfaces.try_emplace(count);
   if (is_new) {
     const Shape shape = gallery_shape("octic");
-    const double scouted = static_cast<double>(sample_shape(shape, make_grid(shape.bounds, 64)).size());
+    const double presampled = static_cast<double>(sample_shape(shape, make_grid(shape.bounds, 64)).size());
     it->second.samples = sample_shape(
         shape, make_grid(shape.bounds,
-                         static_cast<std::size_t>(64 * std::sqrt(100.0 * static_cast<double>(count) / scouted))));
-    Run& run = Run::silent();
-    CellEvaluator evaluator(it->second.samples, run);
-    it->second.seeds = balance_seeds(evaluator, count, {}, run).seeds;
+                         static_cast<std::size_t>(64 * std::sqrt(100.0 * static_cast<double>(count) / presampled))));
+    ExecutionContext& context = ExecutionContext::silent();
+    CellEvaluator evaluator(it->second.samples, context);
+    it->second.seeds = relax_seeds(evaluator, count, {}, context).seeds;
   }
   return it->second;
 }
@@ -41,9 +41,9 @@ const Surface& surface(std::size_t count) {
 template <typename Work>
 void repeat(benchmark::State& state, const Work& work) {
   const Surface& s = surface(static_cast<std::size_t>(state.range(0)));
-  Run run(static_cast<unsigned>(state.range(1)));
-  with_threads(run, [&] {
-    CellEvaluator evaluator(s.samples, run);
+  ExecutionContext context(static_cast<unsigned>(state.range(1)));
+  with_threads(context, [&] {
+    CellEvaluator evaluator(s.samples, context);
     std::vector<Vec3> seeds = s.seeds;
     const double step = 1e-3 * std::sqrt(s.samples.total_area / static_cast<double>(seeds.size()));
     double sign = 1;

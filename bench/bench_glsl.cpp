@@ -91,8 +91,8 @@ int main(int argc, char** argv) try {
   const auto counting = std::make_shared<Counting>(field);
   shape.what = std::shared_ptr<const Field>(counting);
   const double begin = now();
-  Run run;
-  const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, resolution), run);
+  ExecutionContext context;
+  const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, resolution), context);
   const double seconds = now() - begin, evaluations = static_cast<double>(counting->total());
   std::printf("%s on %s\n", argv[1], gl_renderer(options.device).c_str());
   std::printf("raw: %.1f million evaluations per second\n", 1e-6 / cost);

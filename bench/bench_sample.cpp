@@ -28,7 +28,7 @@ BENCHMARK(scan)->Arg(170)->Arg(650)->Unit(benchmark::kMillisecond)->UseRealTime(
 void convert(benchmark::State& state) {
   const Mesh mesh = make_icosphere(6);
   const TriDexel solid = scan_mesh(mesh, make_grid(mesh.bounds(), static_cast<std::size_t>(state.range(0))));
-  for (auto _ : state) benchmark::DoNotOptimize(sample_dexels(solid, mesh, Run::silent()));
+  for (auto _ : state) benchmark::DoNotOptimize(sample_dexels(solid, mesh, ExecutionContext::silent()));
   per_sample(state, solid.size());
 }
 BENCHMARK(convert)->Arg(170)->Arg(650)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -47,11 +47,11 @@ class PeakMemory {
 
 void voxelization(benchmark::State& state) {
   const VoxelGrid grid = make_voxel_grid(model().bounds(), static_cast<std::size_t>(state.range(0)), 10);
-  Run run(static_cast<unsigned>(state.range(1)));
+  ExecutionContext context(static_cast<unsigned>(state.range(1)));
   SiteVoxels sites;
   for (auto _ : state) {
     sites = {};
-    sites = voxelize_mesh(model(), grid, run);
+    sites = voxelize_mesh(model(), grid, context);
   }
   state.counters["sites"] = static_cast<double>(sites.size());
   state.counters["bytes"] = static_cast<double>(sites.bytes());
@@ -60,12 +60,12 @@ void voxelization(benchmark::State& state) {
 /// Both stages, and the memory they take at most.
 void both(benchmark::State& state) {
   const VoxelGrid grid = make_voxel_grid(model().bounds(), static_cast<std::size_t>(state.range(0)), 10);
-  Run run(static_cast<unsigned>(state.range(1)));
+  ExecutionContext context(static_cast<unsigned>(state.range(1)));
   double peak = 0;
   for (auto _ : state) {
     const PeakMemory memory;
-    const SiteVoxels sites = voxelize_mesh(model(), grid, run);
-    const Shell shell = build_shell(sites, static_cast<unsigned>(state.range(2)), run);
+    const SiteVoxels sites = voxelize_mesh(model(), grid, context);
+    const NarrowBand shell = build_narrow_band(sites, static_cast<unsigned>(state.range(2)), context);
     peak = memory.bytes();
     state.counters["voxels"] = static_cast<double>(shell.size());
     state.counters["bytes"] = static_cast<double>(sites.bytes() + shell.bytes());
@@ -98,12 +98,12 @@ void openvdb_band(benchmark::State& state) {
 
 void transform(benchmark::State& state) {
   const VoxelGrid grid = make_voxel_grid(model().bounds(), static_cast<std::size_t>(state.range(0)), 10);
-  Run run(static_cast<unsigned>(state.range(1)));
-  const SiteVoxels sites = voxelize_mesh(model(), grid, run);
-  Shell shell;
+  ExecutionContext context(static_cast<unsigned>(state.range(1)));
+  const SiteVoxels sites = voxelize_mesh(model(), grid, context);
+  NarrowBand shell;
   for (auto _ : state) {
     shell = {};
-    shell = build_shell(sites, static_cast<unsigned>(state.range(2)), run);
+    shell = build_narrow_band(sites, static_cast<unsigned>(state.range(2)), context);
   }
   state.counters["voxels"] = static_cast<double>(shell.size());
   state.counters["bytes"] = static_cast<double>(shell.bytes());

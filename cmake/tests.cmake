@@ -33,6 +33,9 @@ foreach(room ${EVENMESH_ROOMS})
   endif()
 endforeach()
 
+foreach(room grid features cvt connect topology refine)  # their tests sample surfaces and connect what they found
+  target_link_libraries(test_${room} PRIVATE evenmesh_features evenmesh_band evenmesh_connect)
+endforeach()
 if(TARGET test_pipeline)
   target_link_libraries(test_pipeline PRIVATE evenmesh_io)  # models are files
 endif()

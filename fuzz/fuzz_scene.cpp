@@ -32,7 +32,7 @@ void check(const evenmesh::Shape& shape) {
 /// Any bytes give a valid shape or a sentence. No folder: files are not what is fuzzed here.
 void check(std::string_view bytes, std::string_view name) {
   try {
-    check(evenmesh::parse_scene(bytes, name, "/nowhere", evenmesh::Run::silent(), {.triangles = 100'000}));
+    check(evenmesh::parse_scene(bytes, name, "/nowhere", evenmesh::ExecutionContext::silent(), {.triangles = 100'000}));
   } catch (const evenmesh::UnusableInput&) {
   } catch (const evenmesh::NotAvailable&) {
   }

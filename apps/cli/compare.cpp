@@ -75,11 +75,11 @@ std::string json(const MeshDistance& d) {
 int run_compare(const CompareArguments& a) {
   const CompareOptions options{.samples = whole_number("--samples", a.samples, 1, 1'000'000'000)};
   if (a.a == "-" && a.b == "-") throw InvalidInput("only one of the two meshes can come from standard input");
-  Run run(static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024)));
-  const CancelOnInterrupt interrupt(run);
-  const Mesh first = read_mesh_file("compare", a.a, run);
-  const Mesh second = read_mesh_file("compare", a.b, run);
-  const MeshDistance distance = compare_meshes(first, second, options, run);
+  ExecutionContext context(static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024)));
+  const CancelOnInterrupt interrupt(context);
+  const Mesh first = read_mesh_file("compare", a.a, context);
+  const Mesh second = read_mesh_file("compare", a.b, context);
+  const MeshDistance distance = compare_meshes(first, second, options, context);
   write_output("-", a.json ? json(distance) : text(distance));
   return Status::done;
 }

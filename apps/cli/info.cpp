@@ -25,17 +25,17 @@ struct InfoArguments {
 
 using Json = nlohmann::ordered_json;
 
-std::string describe(const Mesh& mesh, bool json, Run& run) {
-  const MeshQuality quality = measure_quality(mesh, run);
-  const std::size_t pairs = self_intersections(mesh, run).size();
+std::string describe(const Mesh& mesh, bool json, ExecutionContext& context) {
+  const MeshQuality quality = measure_quality(mesh, context);
+  const std::size_t pairs = self_intersections(mesh, context).size();
   if (!json) return table(quality, pairs);
   auto figures = Json::parse(quality_json(quality));
   figures["self_intersections"] = pairs;
   return figures.dump(2) + "\n";
 }
 
-std::string describe(const PointCloud& cloud, bool json, Run& run) {
-  const double spacing = point_spacing(cloud, run);
+std::string describe(const PointCloud& cloud, bool json, ExecutionContext& context) {
+  const double spacing = point_spacing(cloud, context);
   if (!json) return table(cloud, spacing);
   const Box box = cloud.bounds();
   const Json figures{{"points", cloud.points.size()},
@@ -46,10 +46,10 @@ std::string describe(const PointCloud& cloud, bool json, Run& run) {
 }
 
 int run_info(const InfoArguments& a) {
-  Run run(static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024)));
-  const CancelOnInterrupt interrupt(run);
-  const std::variant<Mesh, PointCloud> contents = read_file("info", a.mesh, run);
-  const std::string text = std::visit([&](const auto& what) { return describe(what, a.json, run); }, contents);
+  ExecutionContext context(static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024)));
+  const CancelOnInterrupt interrupt(context);
+  const std::variant<Mesh, PointCloud> contents = read_file("info", a.mesh, context);
+  const std::string text = std::visit([&](const auto& what) { return describe(what, a.json, context); }, contents);
   write_output("-", a.json ? text : fmt::format("{}\n{}", a.mesh == "-" ? "standard input" : a.mesh, text));
   return Status::done;
 }

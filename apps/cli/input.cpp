@@ -107,32 +107,32 @@ Shape shape_of(std::variant<Mesh, PointCloud> contents, const std::string& title
 }
 
 /// Recognized by content alone; relative paths in a scene start from the working folder.
-Shape read_standard_input(const GlslOptions& shader, Run& run) {
+Shape read_standard_input(const GlslOptions& shader, ExecutionContext& context) {
   const std::string bytes = read_bytes("-"), title = "standard input";
   if (is_dexel_file(bytes)) return shape_from_dexels(parse_dexels(bytes, title), title);
   const std::string_view head = std::string_view(bytes).substr(0, 4096);
-  if (is_scene("-", head)) return parse_scene(bytes, title, {}, run);
+  if (is_scene("-", head)) return parse_scene(bytes, title, {}, context);
   if (is_glsl("-", head)) return shape_from_glsl(bytes, shader, title);
-  return shape_of(parse_mesh_or_points(bytes, title, run), title);
+  return shape_of(parse_mesh_or_points(bytes, title, context), title);
 }
 
-Shape read_one(const std::string& name, const GlslOptions& shader, Run& run) {
+Shape read_one(const std::string& name, const GlslOptions& shader, ExecutionContext& context) {
   if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
-  if (name == "-") return read_standard_input(shader, run);
+  if (name == "-") return read_standard_input(shader, context);
   if (names_a_shader(name)) return read_glsl(name, shader);
-  if (names_a_scene(name)) return read_scene(name, run);
-  if (names_dexels(name)) return shape_from_dexels(read_dexels(name, run), name);
+  if (names_a_scene(name)) return read_scene(name, context);
+  if (names_dexels(name)) return shape_from_dexels(read_dexels(name, context), name);
   refuse_planned_kinds(name);
-  return shape_of(read_mesh_or_points(name, run), name);
+  return shape_of(read_mesh_or_points(name, context), name);
 }
 
 /// What shaders draw, with the mesh that is the only input, or without.
-Shape read_drawing(const InputArguments& input, const Box& bounds, Run& run) {
+Shape read_drawing(const InputArguments& input, const Box& bounds, ExecutionContext& context) {
   RasterOptions options{.vertex_count = input.raster_vertices,
                         .bounds = bounds,
                         .definitions = input.definitions,
                         .device = input.gl_device};
-  if (!input.positional.empty()) options.geometry = read_mesh_file("mesh --raster", input.positional[0], run);
+  if (!input.positional.empty()) options.geometry = read_mesh_file("mesh --raster", input.positional[0], context);
   const auto path = [](const std::string& name) { return name == "default" ? "" : name; };
   return read_raster(path(input.raster[0]), path(input.raster[1]), std::move(options), "raster");
 }
@@ -155,14 +155,15 @@ void check_drawing(const InputArguments& input) {
 
 }  // namespace
 
-Mesh read_mesh_file(const std::string& command, const std::string& name, Run& run) {
+Mesh read_mesh_file(const std::string& command, const std::string& name, ExecutionContext& context) {
   check_file(command, name);
-  return read_mesh(name, run);
+  return read_mesh(name, context);
 }
 
-std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::string& name, Run& run) {
+std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::string& name,
+                                         ExecutionContext& context) {
   check_file(command, name);
-  return read_mesh_or_points(name, run);
+  return read_mesh_or_points(name, context);
 }
 
 void check_input(const InputArguments& input, const InputCount& count) {
@@ -204,10 +205,11 @@ void check_input(const InputArguments& input, const InputCount& count) {
   }
 }
 
-std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, Run& run) {
-  if (!input.raster.empty()) return {read_drawing(input, bounds, run)};
+std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, ExecutionContext& context) {
+  if (!input.raster.empty()) return {read_drawing(input, bounds, context)};
   std::vector<Shape> shapes;
-  for (const std::string& name : input.positional) shapes.push_back(read_one(name, shader_options(input, bounds), run));
+  for (const std::string& name : input.positional)
+    shapes.push_back(read_one(name, shader_options(input, bounds), context));
   for (const std::string& expression : input.expressions) {
     shapes.push_back(shape_from_expression(expression, parameters_of(input), bounds));
   }

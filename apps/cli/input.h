@@ -44,12 +44,13 @@ std::map<std::string, double> parameters_of(const InputArguments& input);
 /// @throws InvalidInput   an expression or name that is wrong
 /// @throws NotAvailable   an input kind that this version does not contain
 /// @throws UnusableInput  a file that cannot be read
-std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, Run& run);
+std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, ExecutionContext& context);
 
 /// A mesh file, or standard input for "-". Throws like read_shapes.
-Mesh read_mesh_file(const std::string& command, const std::string& name, Run& run);
+Mesh read_mesh_file(const std::string& command, const std::string& name, ExecutionContext& context);
 
 /// A file of a mesh or of points, or standard input for "-". Throws like read_shapes.
-std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::string& name, Run& run);
+std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::string& name,
+                                         ExecutionContext& context);
 
 }  // namespace evenmesh::cli

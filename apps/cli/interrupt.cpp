@@ -15,7 +15,7 @@ namespace evenmesh::cli {
 namespace {
 
 std::mutex state;  // guards the three below; held while files appear
-Run* running = nullptr;
+ExecutionContext* running = nullptr;
 bool interrupted = false;
 bool written = false;
 
@@ -54,10 +54,10 @@ void watch_for_interrupts() {
   std::thread(wait_for_interrupts).detach();
 }
 
-CancelOnInterrupt::CancelOnInterrupt(Run& run) {
+CancelOnInterrupt::CancelOnInterrupt(ExecutionContext& context) {
   const std::lock_guard lock(state);
-  running = &run;
-  if (interrupted) run.cancel();
+  running = &context;
+  if (interrupted) context.cancel();
 }
 
 CancelOnInterrupt::~CancelOnInterrupt() {

@@ -8,11 +8,11 @@ namespace evenmesh::cli {
 /// Takes over SIGINT and SIGTERM. Call once, first thing in main, before any other thread exists.
 void watch_for_interrupts();
 
-/// While one lives, the first interrupt cancels `run`. If the program has not ended by itself within 0.4 s, or at a
+/// While one lives, the first interrupt cancels `context`. If the program has not ended by itself within 0.4 s, or at a
 /// second interrupt, it is ended at once.
 class CancelOnInterrupt {
  public:
-  explicit CancelOnInterrupt(Run& run);
+  explicit CancelOnInterrupt(ExecutionContext& context);
   ~CancelOnInterrupt();
   CancelOnInterrupt(const CancelOnInterrupt&) = delete;
   CancelOnInterrupt& operator=(const CancelOnInterrupt&) = delete;

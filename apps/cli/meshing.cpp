@@ -33,9 +33,9 @@ void refuse_planned_options(const MeshingArguments& a) {
 }
 
 /// Degrees; none: off.
-std::optional<double> crease_angle(const std::string& text) {
+std::optional<double> feature_angle(const std::string& text) {
   if (text == "off") return std::nullopt;
-  if (text == "auto") return MeshOptions{}.crease_angle;
+  if (text == "auto") return MeshOptions{}.feature_angle;
   const double angle = real_number("--features", text, 0, 180);
   if (!(angle > 0 && angle < 180))
     throw InvalidInput(fmt::format("--features takes auto, off or an angle between 0 and 180 degrees, not {}", text));
@@ -58,7 +58,7 @@ MeshOptions mesh_options(const MeshingArguments& a) {
   if (!a.bounds.empty()) options.bounds = box("--bounds", a.bounds);
   options.method = static_cast<Method>(choice("--method", a.method, {"auto", "raster", "shell"}));
   options.wrap = a.wrap;
-  options.crease_angle = crease_angle(a.features);
+  options.feature_angle = feature_angle(a.features);
   if (!a.thickness.empty()) options.thickness = static_cast<unsigned>(whole_number("--thickness", a.thickness, 1, 20));
   options.quality = static_cast<Quality>(choice("--quality", a.quality, {"fast", "normal", "high"}));
   options.optimizer = static_cast<Optimizer>(choice("--optimizer", a.optimizer, {"lbfgs", "lloyd"}));
@@ -190,10 +190,10 @@ Plan check(MeshingArguments& a, const Operation& operation) {
 }
 
 /// The shape without points that lie far from all others.
-Shape without_outliers(const Shape& shape, double deviations, Talk talk, Run& run) {
+Shape without_outliers(const Shape& shape, double deviations, Talk talk, ExecutionContext& context) {
   if (!shape.points()) throw InvalidInput("--outliers is for points; the input has a surface");
   const std::size_t given = shape.points()->points.size();
-  PointCloud cloud = remove_outliers(*shape.points(), {.deviations = deviations}, run);
+  PointCloud cloud = remove_outliers(*shape.points(), {.deviations = deviations}, context);
   if (talk != Talk::quiet) say("note", fmt::format("{} of {} points left out", given - cloud.points.size(), given));
   return shape_from_points(std::move(cloud), shape.name);
 }
@@ -227,8 +227,8 @@ bool tell_notices(const Report& report, Talk talk) {
 int run_meshing(MeshingArguments a, const Operation& operation) {
   const auto start = std::chrono::steady_clock::now();
   const Plan plan = check(a, operation);
-  Run run(plan.threads);
-  const CancelOnInterrupt interrupt(run);
+  ExecutionContext context(plan.threads);
+  const CancelOnInterrupt interrupt(context);
   MeshResult result;
   Artifacts kept;
   if (!a.dump_dexels.empty()) kept.dexels.emplace();
@@ -237,23 +237,23 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
   std::string html;
   double reading = 0;
   {
-    Terminal terminal(run, plan.talk, a.progress);
-    std::vector<Shape> inputs = read_shapes(a.input, plan.options.bounds.value_or(Box{}), run);
+    Terminal terminal(context, plan.talk, a.progress);
+    std::vector<Shape> inputs = read_shapes(a.input, plan.options.bounds.value_or(Box{}), context);
     if (plan.on_gl) move_to_gl(inputs, a.input.gl_device, plan.talk);
     Shape shape = operation.combine ? operation.combine(std::move(inputs)) : std::move(inputs.at(0));
-    if (plan.outliers) shape = without_outliers(shape, *plan.outliers, plan.talk, run);
+    if (plan.outliers) shape = without_outliers(shape, *plan.outliers, plan.talk, context);
     if (plan.regularize) shape = opening(closing(std::move(shape), *plan.regularize), *plan.regularize);
     MeshOptions options = plan.options;
     if (operation.prepare) operation.prepare(shape, options, plan.talk);
     reading = seconds_since(start);
-    result = mesh_shape(shape, options, run, &kept);
+    result = mesh_shape(shape, options, context, &kept);
     auto& seconds = result.report.seconds;
     seconds.insert(seconds.begin(), {"read", reading});
     if (!a.dump_shell.empty() && !kept.shell)
       throw InvalidInput("--dump-shell: rays have no shell; add --method shell");
     if (!a.dump_dexels.empty() && !kept.dexels)
       throw InvalidInput("--dump-dexels: sheets have no inside; add --method raster");
-    if (!a.report.empty()) html = report_html(result, shape.name, run, kept);
+    if (!a.report.empty()) html = report_html(result, shape.name, context, kept);
   }
   {
     const WritingGuard guard;

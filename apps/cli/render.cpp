@@ -39,11 +39,11 @@ int run_render(const RenderArguments& a) {
   const RenderOptions options = render_options(a);
   if (a.output.empty()) throw InvalidInput("no output; give -o FILE.png, or -o - for standard output");
   check_output("-o", a.output);
-  Run run(static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024)));
-  const CancelOnInterrupt interrupt(run);
+  ExecutionContext context(static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024)));
+  const CancelOnInterrupt interrupt(context);
   std::vector<Image> images;
-  images.push_back(render_mesh(read_mesh_file("render", a.mesh, run), options, run));
-  if (!a.other.empty()) images.push_back(render_mesh(read_mesh_file("render", a.other, run), options, run));
+  images.push_back(render_mesh(read_mesh_file("render", a.mesh, context), options, context));
+  if (!a.other.empty()) images.push_back(render_mesh(read_mesh_file("render", a.other, context), options, context));
   const std::string png = encode_png(images.size() == 1 ? images[0] : beside(images));
   const WritingGuard guard;
   write_output(a.output, png);

@@ -14,7 +14,7 @@
 namespace evenmesh::cli {
 namespace {
 
-constexpr double least_solidity = 0.6;  ///< below it there is no inside to speak of
+constexpr double min_solidity = 0.6;  ///< below it there is no inside to speak of
 
 struct RepairArguments {
   MeshingArguments meshing;
@@ -46,7 +46,7 @@ int run_repair(RepairArguments a) {
     if (mesh.triangles.empty()) throw UnusableInput(shape.name + " has no triangle with an area");
     if (talk != Talk::quiet) say("note", said_of(defects));
     shape = shape_from_mesh(std::move(mesh), shape.name);
-    const bool sheets = hull == "auto" && solidity(*shape.mesh()) < least_solidity;
+    const bool sheets = hull == "auto" && solidity(*shape.mesh()) < min_solidity;
     if (hull == "wrap" || sheets) {
       if (talk != Talk::quiet && sheets)
         say("note", "most of it is sheets without an inside: they are wrapped, one voxel outside (--hull outer: not)");

@@ -16,11 +16,11 @@ std::string minutes_and_seconds(double seconds) {
 
 }  // namespace
 
-Terminal::Terminal(Run& run, Talk talk, const std::string& progress) : run_(run) {
+Terminal::Terminal(ExecutionContext& context, Talk talk, const std::string& progress) : context_(context) {
   const bool bar = progress == "on" || (progress == "auto" && talk != Talk::quiet && isatty(STDERR_FILENO) == 1);
-  if (bar) run.on_progress([this](std::string_view stage, double fraction) { draw(stage, fraction); });
+  if (bar) context.on_progress([this](std::string_view stage, double fraction) { draw(stage, fraction); });
   if (talk == Talk::verbose) {
-    run.on_log([this](std::string_view line) {
+    context.on_log([this](std::string_view line) {
       wipe();
       fmt::print(stderr, "{}\n", line);
     });
@@ -28,8 +28,8 @@ Terminal::Terminal(Run& run, Talk talk, const std::string& progress) : run_(run)
 }
 
 Terminal::~Terminal() {
-  run_.on_progress({});
-  run_.on_log({});
+  context_.on_progress({});
+  context_.on_log({});
   wipe();
 }
 

@@ -12,11 +12,12 @@ namespace evenmesh::cli {
 
 enum class Talk { quiet, normal, verbose };
 
-/// Draws the progress of a Run on a terminal and passes its log on. Detaches and wipes the bar when it goes.
+/// Draws the progress of a ExecutionContext on a terminal and passes its log on. Detaches and wipes the bar when it
+/// goes.
 class Terminal {
  public:
   /// @param progress  "auto" (bar on a terminal only), "on" or "off"
-  Terminal(Run& run, Talk talk, const std::string& progress);
+  Terminal(ExecutionContext& context, Talk talk, const std::string& progress);
   ~Terminal();
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
@@ -27,7 +28,7 @@ class Terminal {
  private:
   void draw(std::string_view stage, double fraction);
 
-  Run& run_;
+  ExecutionContext& context_;
   std::mutex mutex_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point drawn_{};

@@ -30,7 +30,7 @@ class NotAvailable : public Error {
   using Error::Error;
 };
 
-/// The caller asked to stop (see Run::cancel).
+/// The caller asked to stop (see ExecutionContext::cancel).
 class Cancelled : public Error {
  public:
   Cancelled() : Error("cancelled") {}

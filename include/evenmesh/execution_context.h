@@ -12,17 +12,17 @@ namespace evenmesh {
 
 /// Carries threads, progress, cancellation and log through a long computation.
 ///
-/// One Run may be shared by several threads. Results never depend on it.
-class Run {
+/// One ExecutionContext may be shared by several threads. Results never depend on it.
+class ExecutionContext {
  public:
   /// Called with the stage that is running and the finished share of the whole job, in [0, 1], never decreasing.
   using Progress = std::function<void(std::string_view stage, double fraction)>;
   /// Called with one line of text, without newline.
   using Log = std::function<void(std::string_view line)>;
 
-  Run() = default;
+  ExecutionContext() = default;
   /// @param threads  number of worker threads, 0 = one per processor
-  explicit Run(unsigned threads) : threads_(threads) {}
+  explicit ExecutionContext(unsigned threads) : threads_(threads) {}
 
   unsigned threads() const { return threads_; }
   void on_progress(Progress callback) { progress_ = std::move(callback); }
@@ -45,8 +45,8 @@ class Run {
     if (log_) log_(line);
   }
 
-  /// A Run for callers that do not care: all processors, no progress, no log.
-  static Run& silent();
+  /// A ExecutionContext for callers that do not care: all processors, no progress, no log.
+  static ExecutionContext& silent();
 
  private:
   unsigned threads_ = 0;

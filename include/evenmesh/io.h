@@ -31,7 +31,7 @@ std::optional<MeshFormat> format_of_content(std::string_view bytes);
 ///         truncated, an index out of range, a coordinate that is not finite, no triangle in it, not a mesh at all
 /// Guarantee: any sequence of bytes either gives a mesh with valid indices and finite coordinates or throws.
 /// Cost: O(bytes) time and memory; never allocates more than a small multiple of the file's size.
-Mesh read_mesh(const std::filesystem::path& path, Run& run = Run::silent());
+Mesh read_mesh(const std::filesystem::path& path, ExecutionContext& context = ExecutionContext::silent());
 
 /// The same from memory; `name` is used for its extension and in messages.
 Mesh parse_mesh(std::string_view bytes, std::string_view name);
@@ -49,17 +49,18 @@ Mesh parse_mesh(std::string_view bytes, std::string_view name);
 ///         mesh, truncated, a wrong number of columns or points, a coordinate that is not finite, no text at all
 /// Guarantee: any sequence of bytes either gives finite coordinates, and no or as many normals, or throws.
 /// Cost: O(bytes) time and memory, in parallel; never allocates more than a small multiple of the file's size.
-PointCloud read_points(const std::filesystem::path& path, Run& run = Run::silent());
+PointCloud read_points(const std::filesystem::path& path, ExecutionContext& context = ExecutionContext::silent());
 
 /// The same from memory; `name` is used for its extension and in messages.
 PointCloud parse_points(std::string_view bytes, std::string_view name);
 
 /// Reads whichever of the two a file holds: a mesh, or points. Otherwise like read_mesh and read_points.
-std::variant<Mesh, PointCloud> read_mesh_or_points(const std::filesystem::path& path, Run& run = Run::silent());
+std::variant<Mesh, PointCloud> read_mesh_or_points(const std::filesystem::path& path,
+                                                   ExecutionContext& context = ExecutionContext::silent());
 
 /// The same from memory; `name` is used for its extension and in messages.
 std::variant<Mesh, PointCloud> parse_mesh_or_points(std::string_view bytes, std::string_view name,
-                                                    Run& run = Run::silent());
+                                                    ExecutionContext& context = ExecutionContext::silent());
 
 /// Writes a mesh; format by extension. PLY, STL, GLB are binary little-endian, float32 coordinates.
 /// The file appears under its name only when it is complete (temporary name, then rename).
@@ -74,7 +75,7 @@ std::string serialize_mesh(const Mesh& mesh, MeshFormat format);
 
 /// Reads a dexel file (.tdx), as serialize_dexels() writes it (docs/formats.md).
 /// @throws UnusableInput  one sentence that names the file and what is wrong with it
-Dexels read_dexels(const std::filesystem::path& path, Run& run = Run::silent());
+Dexels read_dexels(const std::filesystem::path& path, ExecutionContext& context = ExecutionContext::silent());
 /// The same from memory; `name` is used in messages.
 Dexels parse_dexels(std::string_view bytes, std::string_view name);
 /// The bytes of a dexel file: 96 and 16 for each crossing.

@@ -40,7 +40,7 @@ struct MeshQuality {
 };
 
 /// Cost: O(faces · log faces) at worst; 100,000 faces take some ten milliseconds.
-MeshQuality measure_quality(const Mesh& mesh, Run& run = Run::silent());
+MeshQuality measure_quality(const Mesh& mesh, ExecutionContext& context = ExecutionContext::silent());
 
 /// A line per figure, `"key": value`, as one JSON object (keys of the command line's --json).
 std::string quality_json(const MeshQuality& quality);
@@ -59,7 +59,8 @@ Histogram histogram_of_quality(const Mesh& mesh, int bins);  ///< Q of every tri
 ///
 /// Guarantee: exact on the double coordinates given. Returns each pair once, smaller index first, sorted.
 /// Cost: near-linear for meshes without many overlaps; 120,000 faces about 0.2 s on one core.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(const Mesh& mesh, Run& run = Run::silent());
+std::vector<std::pair<std::uint32_t, std::uint32_t>> self_intersections(
+    const Mesh& mesh, ExecutionContext& context = ExecutionContext::silent());
 
 /// Distances between two meshes, sampled: every vertex and `samples` points spread by area on each side.
 struct MeshDistance {
@@ -80,6 +81,7 @@ struct CompareOptions {
   std::size_t samples = 500'000;  ///< area samples on each mesh, [1, 1e9]
 };
 /// Cost: O((samples + vertices) · log faces). @throws InvalidInput if a mesh has no triangle.
-MeshDistance compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options = {}, Run& run = Run::silent());
+MeshDistance compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options = {},
+                            ExecutionContext& context = ExecutionContext::silent());
 
 }  // namespace evenmesh

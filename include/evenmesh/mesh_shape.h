@@ -42,7 +42,7 @@ struct MeshOptions {
   std::optional<unsigned> thickness{};  ///< half width d of the shell in voxels, [1, 20]: holes and gaps narrower than
                                         ///< 2d are bridged; default 2, for point clouds by their spacing
   /// Sharp edges: where the surface turns by more than this, degrees in (0, 180), the mesh gets an edge. None: off.
-  std::optional<double> crease_angle{40};
+  std::optional<double> feature_angle{40};
   bool fill_cavities = false;         ///< of solids, keep what the outside reaches: their outer hull
   bool wrap = false;                  ///< a closed mesh one voxel around the surface instead, by the shell
   Density density{};                  ///< none: even. Smooth, and at most a hundred times its mean
@@ -122,12 +122,12 @@ struct Artifacts {
 /// @param kept  may be null: nothing is kept
 /// @throws InvalidInput   options out of range
 /// @throws UnusableInput  no surface within the bounds, or their longest side is not between 1e-8 and 1e10
-/// @throws Cancelled      through `run`
+/// @throws Cancelled      through `context`
 /// Based on Martínez, Claux, Lefebvre, Raster2Mesh, Inria RR-8684, 2015, and, for the shell, on Leung, Wang, He, Liu,
 /// Wang, A unified framework for isotropic meshing based on narrow-banded Euclidean distance transformation,
 /// Computational Visual Media 1(3), 2015.
-MeshResult mesh_shape(const Shape& shape, const MeshOptions& options = {}, Run& run = Run::silent(),
-                      Artifacts* kept = nullptr);
+MeshResult mesh_shape(const Shape& shape, const MeshOptions& options = {},
+                      ExecutionContext& context = ExecutionContext::silent(), Artifacts* kept = nullptr);
 
 /// A line per figure, `"key": value`, as one JSON object (keys of the command line's --json).
 std::string report_json(const Report& report);

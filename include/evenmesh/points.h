@@ -25,7 +25,7 @@ struct PointCloud {
 /// Returns model units; 0 when fewer than two points differ. From 131,072 points on, the median is over as many, spread
 /// evenly. Guarantee: same bits for any number of threads. Cost: O(points · log points), about 0.6 s per million.
 /// @throws InvalidInput  a coordinate is not finite
-double point_spacing(const PointCloud& cloud, Run& run = Run::silent());
+double point_spacing(const PointCloud& cloud, ExecutionContext& context = ExecutionContext::silent());
 
 /// Which points are taken for outliers.
 struct OutlierOptions {
@@ -40,6 +40,7 @@ struct OutlierOptions {
 /// Guarantee: same bits for any number of threads. Cost: O(points · neighbours · log points).
 /// @throws InvalidInput  options out of range, a coordinate that is not finite, or normals that are not one per point
 /// Based on Rusu et al., Towards 3D point cloud based object maps for household environments, RAS 2008.
-PointCloud remove_outliers(const PointCloud& cloud, const OutlierOptions& options = {}, Run& run = Run::silent());
+PointCloud remove_outliers(const PointCloud& cloud, const OutlierOptions& options = {},
+                           ExecutionContext& context = ExecutionContext::silent());
 
 }  // namespace evenmesh

@@ -28,7 +28,8 @@ struct Image {
 };
 
 /// Orthographic picture of the whole mesh. @throws InvalidInput no triangle, or a size out of range
-Image render_mesh(const Mesh& mesh, const RenderOptions& options = {}, Run& run = Run::silent());
+Image render_mesh(const Mesh& mesh, const RenderOptions& options = {},
+                  ExecutionContext& context = ExecutionContext::silent());
 /// Several pictures beside each other, equal heights assumed.
 Image beside(const std::vector<Image>& images);
 /// Bytes of a PNG file.
@@ -36,7 +37,7 @@ std::string encode_png(const Image& image);
 
 /// One self-contained HTML page: pictures, histograms of angles and of Q, energy per evaluation, time per stage,
 /// notices; a cut through the shell where one was kept (Artifacts::shell_cut).
-std::string report_html(const MeshResult& result, const std::string& title, Run& run = Run::silent(),
-                        const Artifacts& kept = {});
+std::string report_html(const MeshResult& result, const std::string& title,
+                        ExecutionContext& context = ExecutionContext::silent(), const Artifacts& kept = {});
 
 }  // namespace evenmesh

@@ -43,6 +43,6 @@ Mesh holes_filled(const Mesh& mesh, std::size_t& filled);
 /// inside.
 ///
 /// Asked at 64 points along the longest side. Cost: some milliseconds and about 0.2 µs per triangle.
-double solidity(const Mesh& mesh, Run& run = Run::silent());
+double solidity(const Mesh& mesh, ExecutionContext& context = ExecutionContext::silent());
 
 }  // namespace evenmesh

@@ -37,13 +37,13 @@ bool is_scene(std::string_view name, std::string_view first_bytes);
 /// @throws NotAvailable   a documented node that this version does not contain
 /// Guarantee: any sequence of bytes either gives a shape or throws; only regular files are opened.
 /// Cost: O(bytes) time and memory, and that of the files it names; nothing is combined before the shape is sampled.
-Shape read_scene(const std::filesystem::path& path, Run& run = Run::silent());
+Shape read_scene(const std::filesystem::path& path, ExecutionContext& context = ExecutionContext::silent());
 
 /// The same from memory.
 /// @param name    for its extension and in messages
 /// @param folder  that relative paths start from
 Shape parse_scene(std::string_view bytes, std::string_view name, const std::filesystem::path& folder,
-                  Run& run = Run::silent(), const SceneLimits& limits = {});
+                  ExecutionContext& context = ExecutionContext::silent(), const SceneLimits& limits = {});
 
 /// A shader file, as shape_from_glsl() takes its text.
 /// @param path  a file, or "-" for standard input

@@ -66,7 +66,7 @@ std::vector<std::uint64_t> brick_codes(const VoxelTiles& tiles) {
 
 class Writer {
  public:
-  Writer(const Shell& shell, const SiteVoxels& sites, ShellSurface& out) : shell_(shell), sites_(sites), out_(out) {}
+  Writer(const NarrowBand& band, const SiteVoxels& sites, BandSurface& out) : band_(band), sites_(sites), out_(out) {}
 
   void write(const Brick& brick, SampleBlock& block) const {
     std::uint32_t at = block.begin;
@@ -82,7 +82,7 @@ class Writer {
 
  private:
   void write(EdgeCode code, const SampleBlock& block, std::uint32_t at) const {
-    const double h = shell_.grid().side;
+    const double h = band_.grid().side;
     Voxel lower{static_cast<std::int32_t>(8 * block.brick[0] + code.i()),
                 static_cast<std::int32_t>(8 * block.brick[1] + code.j()),
                 static_cast<std::int32_t>(8 * block.brick[2] + code.k())};
@@ -90,19 +90,19 @@ class Writer {
     ++upper[code.axis()];
     const bool up = code.lower_end_inside();
     const Voxel &in = up ? lower : upper, &beyond = up ? upper : lower;
-    const NearestSite nearest = *shell_.find(in);
+    const NearestSite nearest = *band_.find(in);
     const std::uint32_t site = site_index(sites_, in, nearest);
-    const Vec3 p = shell_.grid().center(nearest.site(in)) + Vec3{sites_.x[site], sites_.y[site], sites_.z[site]};
-    const Vec3 out = shell_.grid().center(beyond) - p;
+    const Vec3 p = band_.grid().center(nearest.site(in)) + Vec3{sites_.x[site], sites_.y[site], sites_.z[site]};
+    const Vec3 out = band_.grid().center(beyond) - p;
     Vec3 n = unpack_normal(sites_.normal[site]);
     const double facing = dot(normalized(out), n);
     if (facing < 0) n = -n;
     // Where the edge leaves the slab of the shell's thickness around the tangent plane.
-    const Vec3 from = shell_.grid().center(in) - p;
+    const Vec3 from = band_.grid().center(in) - p;
     double t = 0.5;
     if (std::abs(facing) >= clearly_facing) {
       const double slope = h * (up ? n[int(code.axis())] : -n[int(code.axis())]);
-      if (slope > 0.2 * h) t = std::clamp(((shell_.reach() + 0.5) * h - dot(from, n)) / slope, 0.0, 1.0);
+      if (slope > 0.2 * h) t = std::clamp(((band_.reach() + 0.5) * h - dot(from, n)) / slope, 0.0, 1.0);
     } else {
       n = normalized(out);
     }
@@ -118,22 +118,22 @@ class Writer {
     out_.facing[at] = static_cast<float>(facing);
   }
 
-  const Shell& shell_;
+  const NarrowBand& band_;
   const SiteVoxels& sites_;
-  ShellSurface& out_;
+  BandSurface& out_;
 };
 
 }  // namespace
 
-ShellSurface shell_surface(const Shell& shell, const SiteVoxels& sites, Run& run) {
-  return with_threads(run, [&] {
-    ShellSurface surface;
+BandSurface band_surface(const NarrowBand& band, const SiteVoxels& sites, ExecutionContext& context) {
+  return with_threads(context, [&] {
+    BandSurface surface;
     SampleSet& set = surface.samples;
-    set.grid = {shell.grid().center({0, 0, 0}), shell.grid().side, shell.grid().size};
-    const std::vector<std::uint64_t> codes = brick_codes(shell.tiles());
+    set.grid = {band.grid().center({0, 0, 0}), band.grid().side, band.grid().size};
+    const std::vector<std::uint64_t> codes = brick_codes(band.tiles());
     std::vector<std::uint32_t> count(codes.size());
-    parallel_for(run, codes.size(), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) count[b] = brick_at(shell.tiles(), codes[b]).count();
+    parallel_for(context, codes.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) count[b] = brick_at(band.tiles(), codes[b]).count();
     });
     std::size_t total = 0;
     for (std::size_t b = 0; b < codes.size(); ++b) {
@@ -143,22 +143,22 @@ ShellSurface shell_surface(const Shell& shell, const SiteVoxels& sites, Run& run
       total += count[b];
     }
     if (total == 0) throw UnusableInput("the shell is empty: the input has no surface within the bounds");
-    resize_samples(set, total, !sites.source.empty(), run);
+    resize_samples(set, total, !sites.source.empty(), context);
     surface.site.resize(total), surface.facing.resize(total);
-    const Writer writer(shell, sites, surface);
-    parallel_for(run, set.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
+    const Writer writer(band, sites, surface);
+    parallel_for(context, set.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         const auto& at = set.blocks[b].brick;
-        writer.write(brick_at(shell.tiles(), morton_code(at[0], at[1], at[2])), set.blocks[b]);
+        writer.write(brick_at(band.tiles(), morton_code(at[0], at[1], at[2])), set.blocks[b]);
       }
     });
-    sum_area(set, run);
+    sum_area(set, context);
     return surface;
   });
 }
 
-SampleSet drawn_onto_surface(SampleSet set, std::span<const std::uint32_t> index, const ShellSurface& surface,
-                             const SiteVoxels& sites, Run& run) {
+SampleSet drawn_onto_surface(SampleSet set, std::span<const std::uint32_t> index, const BandSurface& surface,
+                             const SiteVoxels& sites, ExecutionContext& context) {
   const double h = sites.grid.side;
   std::vector<Vec3> center(sites.size());
   for (const VoxelTile& tile : sites.tiles) {
@@ -168,7 +168,7 @@ SampleSet drawn_onto_surface(SampleSet set, std::span<const std::uint32_t> index
       center[at++] = sites.grid.center({c[0] + std::int32_t(x), c[1] + std::int32_t(y), c[2] + std::int32_t(z)});
     });
   }
-  parallel_for(run, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       const Vec3 origin = set.block_center(set.blocks[b]);
       for (std::uint32_t i = set.blocks[b].begin; i < set.blocks[b].end; ++i) {

@@ -15,7 +15,7 @@ namespace evenmesh {
 /// The shell is the solid: `samples` bound it and link up as those of any solid. They lie where the edges leave the
 /// shell's thickness around the tangent plane of the nearest site, so over smooth surface they are as even as samples
 /// of the surface itself.
-struct ShellSurface {
+struct BandSurface {
   SampleSet samples;                ///< normals point out of the shell; source: that of the site
   std::vector<std::uint32_t> site;  ///< nearest site of each sample, an index into the SiteVoxels
   /// Cosine between the way from the surface to the sample and the surface's normal: 1 in front of the surface, −1
@@ -26,7 +26,7 @@ struct ShellSurface {
 /// @param sites  those that the shell was built from, with normals
 /// Guarantee: same bytes for any number of threads. Cost: O(shell).
 /// @throws UnusableInput  the shell is empty
-ShellSurface shell_surface(const Shell& shell, const SiteVoxels& sites, Run& run);
+BandSurface band_surface(const NarrowBand& band, const SiteVoxels& sites, ExecutionContext& context);
 
 /// |facing| from here on is clearly in front or behind.
 inline constexpr float clearly_facing = 0.5f;
@@ -35,7 +35,7 @@ inline constexpr float clearly_facing = 0.5f;
 /// voxel of their sites.
 /// @param samples  a subset of surface.samples
 /// @param index    where each of them is in surface.samples
-SampleSet drawn_onto_surface(SampleSet samples, std::span<const std::uint32_t> index, const ShellSurface& surface,
-                             const SiteVoxels& sites, Run& run);
+SampleSet drawn_onto_surface(SampleSet samples, std::span<const std::uint32_t> index, const BandSurface& surface,
+                             const SiteVoxels& sites, ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -11,9 +11,9 @@
 namespace evenmesh {
 namespace {
 
-constexpr double facing = 0.8;       ///< |cosine| between the way across and the normals on both sides
-constexpr double least_width = 1.5;  ///< voxels: nearer ones may be neighbours on one sheet
-constexpr std::size_t least_faces = 4;
+constexpr double facing = 0.8;     ///< |cosine| between the way across and the normals on both sides
+constexpr double min_width = 1.5;  ///< voxels: nearer ones may be neighbours on one sheet
+constexpr std::size_t min_faces = 4;
 constexpr double nearly_narrowest = 1.25;
 constexpr double detour = 1.2;  ///< steps along the surface, over the width, at most: a crease; around a tube it is 1.4
 
@@ -27,22 +27,23 @@ struct Face {
 
 class Gaps {
  public:
-  Gaps(const Shell& shell, const SiteVoxels& sites, Run& run) : shell_(shell), sites_(sites), run_(run) {}
+  Gaps(const NarrowBand& band, const SiteVoxels& sites, ExecutionContext& context)
+      : band_(band), sites_(sites), context_(context) {}
 
   std::vector<FilledGap> result() {
     const std::vector<Face> faces = find_faces();
     const std::vector<std::vector<std::size_t>> groups = connected(faces);
     std::vector<FilledGap> gaps(groups.size());
-    parallel_tasks(run_, groups.size(), [&](std::size_t g) { gaps[g] = gap_of(faces, groups[g]); });
+    parallel_tasks(context_, groups.size(), [&](std::size_t g) { gaps[g] = gap_of(faces, groups[g]); });
     std::erase_if(gaps, [](const FilledGap& gap) { return gap.sites.empty(); });
     return gaps;
   }
 
  private:
   std::vector<Face> find_faces() const {
-    const VoxelTiles& tiles = shell_.tiles();
+    const VoxelTiles& tiles = band_.tiles();
     std::vector<std::vector<Face>> found((tiles.size() + 63) / 64);
-    parallel_tasks(run_, found.size(), [&](std::size_t piece) {
+    parallel_tasks(context_, found.size(), [&](std::size_t piece) {
       for (std::size_t t = 64 * piece; t < std::min(tiles.size(), 64 * (piece + 1)); ++t) add_faces(t, found[piece]);
     });
     std::vector<Face> faces;
@@ -51,9 +52,9 @@ class Gaps {
   }
 
   void add_faces(std::size_t t, std::vector<Face>& faces) const {
-    const VoxelTile& tile = shell_.tiles()[t];
+    const VoxelTile& tile = band_.tiles()[t];
     const Voxel corner = tile.corner();
-    const NearestSite* nearest = shell_.nearest(t).data();
+    const NearestSite* nearest = band_.nearest(t).data();
     const NearestSite* each = nearest;
     for_each_voxel(tile, [&](unsigned x, unsigned y, unsigned z) {
       const NearestSite own = *each++;
@@ -64,7 +65,7 @@ class Gaps {
         if (i < tile_size && j < tile_size && k < tile_size) {
           if (tile.contains(i, j, k)) other = axis == 0 ? each : nearest + tile.rank(i, j, k);
         } else {
-          other = shell_.find({corner[0] + std::int32_t(i), corner[1] + std::int32_t(j), corner[2] + std::int32_t(k)});
+          other = band_.find({corner[0] + std::int32_t(i), corner[1] + std::int32_t(j), corner[2] + std::int32_t(k)});
         }
         if (other == nullptr) continue;
         Voxel apart = other->offset();
@@ -86,7 +87,7 @@ class Gaps {
     face.ends[0] = own.site(at), face.ends[1] = other.site(next);
     const Vec3 way = point(face, 1) - point(face, 0);
     face.width = norm(way);
-    if (face.width < least_width * shell_.grid().side) return;
+    if (face.width < min_width * band_.grid().side) return;
     for (const std::uint32_t site : face.sites)
       if (std::abs(dot(way, unpack_normal(sites_.normal[site]))) < facing * face.width) return;
     face.squared_distance = std::max(own.squared_distance(), other.squared_distance());
@@ -95,7 +96,7 @@ class Gaps {
 
   Vec3 point(const Face& face, std::size_t end) const {
     const std::uint32_t s = face.sites[end];
-    return shell_.grid().center(face.ends[end]) + Vec3{sites_.x[s], sites_.y[s], sites_.z[s]};
+    return band_.grid().center(face.ends[end]) + Vec3{sites_.x[s], sites_.y[s], sites_.z[s]};
   }
 
   /// Faces grouped by voxels that touch, in the order of their first.
@@ -128,7 +129,7 @@ class Gaps {
       if (r == i) group[i] = groups.size(), groups.emplace_back();
       groups[group[r]].push_back(i);
     }
-    std::erase_if(groups, [](const auto& g) { return g.size() < least_faces; });
+    std::erase_if(groups, [](const auto& g) { return g.size() < min_faces; });
     return groups;
   }
 
@@ -142,7 +143,7 @@ class Gaps {
       return {};
     FilledGap gap;
     gap.width = faces[*narrowest].width;
-    gap.middle = shell_.grid().center(faces[*narrowest].at);
+    gap.middle = band_.grid().center(faces[*narrowest].at);
     std::uint32_t least = 0xffffffffu;
     for (const std::size_t f : group) {
       least = std::min(least, faces[f].squared_distance);
@@ -156,7 +157,7 @@ class Gaps {
 
   /// Whether a short way along the sites leads from one side of the face to the other.
   bool joined(const Face& face) const {
-    const int steps = std::max(3, static_cast<int>(detour * face.width / shell_.grid().side));
+    const int steps = std::max(3, static_cast<int>(detour * face.width / band_.grid().side));
     std::unordered_set<std::uint64_t> seen{*sites_.tiles.number(face.ends[0])};
     std::vector<Voxel> front{face.ends[0]}, next;
     for (int step = 0; step < steps && !front.empty(); ++step, front.swap(next), next.clear())
@@ -173,16 +174,16 @@ class Gaps {
     return false;
   }
 
-  const Shell& shell_;
+  const NarrowBand& band_;
   const SiteVoxels& sites_;
-  Run& run_;
+  ExecutionContext& context_;
 };
 
 }  // namespace
 
-std::vector<FilledGap> filled_gaps(const Shell& shell, const SiteVoxels& sites, Run& run) {
+std::vector<FilledGap> filled_gaps(const NarrowBand& band, const SiteVoxels& sites, ExecutionContext& context) {
   if (sites.normal.empty()) return {};
-  return with_threads(run, [&] { return Gaps(shell, sites, run).result(); });
+  return with_threads(context, [&] { return Gaps(band, sites, context).result(); });
 }
 
 }  // namespace evenmesh

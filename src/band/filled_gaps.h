@@ -18,10 +18,12 @@ struct FilledGap {
 
 /// Gaps between sheets that the shell fills, so that the surface is no longer seen from there.
 ///
-/// Where neighbouring voxels have nearest sites that face each other across them, the shell has no border. Creases look
-/// like that in their depth, but there the sites are joined by a short way along the surface; those are left out.
+/// Where neighbouring voxels have nearest sites that face each other across them, the shell has no border.
+/// FeatureCurves look like that in their depth, but there the sites are joined by a short way along the surface; those
+/// are left out.
 /// @param sites  those that the shell was built from, with normals; their signs do not matter
 /// Guarantee: same result for any number of threads; ordered by place. Cost: about 5 ns per voxel of the shell.
-std::vector<FilledGap> filled_gaps(const Shell& shell, const SiteVoxels& sites, Run& run = Run::silent());
+std::vector<FilledGap> filled_gaps(const NarrowBand& band, const SiteVoxels& sites,
+                                   ExecutionContext& context = ExecutionContext::silent());
 
 }  // namespace evenmesh

@@ -69,20 +69,20 @@ class NearSites {
 
 class Bridge {
  public:
-  Bridge(const SiteVoxels& sparse, const Shell& shell, double spacing, bool oriented)
+  Bridge(const SiteVoxels& sparse, const NarrowBand& band, double spacing, bool oriented)
       : sparse_(sparse),
-        shell_(shell),
+        band_(band),
         reach_(reach_in_spacings * spacing / sparse.grid.side),
         lead_(lead_in_spacings * spacing / sparse.grid.side),
         oriented_(oriented) {}
 
   void tile(std::size_t t, SitePart& part) const {
-    const VoxelTile& tile = shell_.tiles()[t];
+    const VoxelTile& tile = band_.tiles()[t];
     NearSites near(sparse_, reach_, oriented_);
     near.gather(tile);
     VoxelTile made;
     made.at = tile.at;
-    const NearestSite* nearest = shell_.nearest(t).data();
+    const NearestSite* nearest = band_.nearest(t).data();
     for_each_voxel(tile, [&](unsigned x, unsigned y, unsigned z) {
       const NearestSite at = *nearest++;
       const Vec3 p{x + 0.5, y + 0.5, z + 0.5};
@@ -108,14 +108,14 @@ class Bridge {
 
  private:
   const SiteVoxels& sparse_;
-  const Shell& shell_;
+  const NarrowBand& band_;
   double reach_, lead_;  // voxels
   bool oriented_;
 };
 
 }  // namespace
 
-void estimate_normals(SiteVoxels& sites, unsigned radius, Run& run) {
+void estimate_normals(SiteVoxels& sites, unsigned radius, ExecutionContext& context) {
   sites.normal.resize(sites.size());
   const auto r = static_cast<std::int32_t>(radius);
   const auto point_of = [&](const Voxel& v) -> std::optional<Vec3> {
@@ -145,8 +145,8 @@ void estimate_normals(SiteVoxels& sites, unsigned radius, Run& run) {
     const Eigen::Vector3d n = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().col(0);
     return Vec3{n[0], n[1], n[2]};
   };
-  with_threads(run, [&] {
-    parallel_for(run, sites.tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
+  with_threads(context, [&] {
+    parallel_for(context, sites.tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const VoxelTile& tile = sites.tiles[t];
         std::uint64_t at = tile.begin;
@@ -161,16 +161,17 @@ void estimate_normals(SiteVoxels& sites, unsigned radius, Run& run) {
   });
 }
 
-SiteVoxels bridge_points(const SiteVoxels& sparse, const Shell& shell, double spacing, bool oriented, Run& run) {
-  return with_threads(run, [&] {
+SiteVoxels moving_least_squares(const SiteVoxels& sparse, const NarrowBand& band, double spacing, bool oriented,
+                                ExecutionContext& context) {
+  return with_threads(context, [&] {
     constexpr std::size_t tiles_per_part = 64;
-    const Bridge bridge(sparse, shell, spacing, oriented);
-    std::vector<SitePart> parts((shell.tiles().size() + tiles_per_part - 1) / tiles_per_part);
-    parallel_tasks(run, parts.size(), [&](std::size_t p) {
-      for (std::size_t t = p * tiles_per_part; t < std::min(shell.tiles().size(), (p + 1) * tiles_per_part); ++t)
+    const Bridge bridge(sparse, band, spacing, oriented);
+    std::vector<SitePart> parts((band.tiles().size() + tiles_per_part - 1) / tiles_per_part);
+    parallel_tasks(context, parts.size(), [&](std::size_t p) {
+      for (std::size_t t = p * tiles_per_part; t < std::min(band.tiles().size(), (p + 1) * tiles_per_part); ++t)
         bridge.tile(t, parts[p]);
     });
-    return join_parts(sparse.grid, parts, run);
+    return join_parts(sparse.grid, parts, context);
   });
 }
 

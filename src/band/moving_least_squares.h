@@ -8,7 +8,7 @@ namespace evenmesh {
 
 /// Normals of sites that have none: of the plane through the sites' points within `radius` voxels, both ways round
 /// (their sign means nothing). Cost: O(sites · radius³).
-void estimate_normals(SiteVoxels& sites, unsigned radius, Run& run);
+void estimate_normals(SiteVoxels& sites, unsigned radius, ExecutionContext& context);
 
 /// The voxels that a smooth surface through scattered sites touches, within the shell that bridges their gaps.
 ///
@@ -23,6 +23,7 @@ void estimate_normals(SiteVoxels& sites, unsigned radius, Run& run);
 /// Guarantee: same bytes for any number of threads. Cost: about a microsecond per voxel of the shell near the surface.
 /// The weighted planes are those of Alexa et al., Computing and rendering point set surfaces, TVCG 9(1), 2003, without
 /// their iteration.
-SiteVoxels bridge_points(const SiteVoxels& sparse, const Shell& shell, double spacing, bool oriented, Run& run);
+SiteVoxels moving_least_squares(const SiteVoxels& sparse, const NarrowBand& band, double spacing, bool oriented,
+                                ExecutionContext& context);
 
 }  // namespace evenmesh

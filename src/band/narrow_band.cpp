@@ -12,8 +12,8 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t kBlocksPerPiece = 32;
-constexpr std::int32_t kBlock = shell_block;
+constexpr std::size_t blocks_per_piece = 32;
+constexpr std::int32_t block = band_block;
 
 /// Site voxels of a tile: the box around them, in voxels of the tile.
 struct TileBox {
@@ -43,12 +43,12 @@ TileBox box_of(const VoxelTile& tile) {
 }
 
 /// Morton codes of the blocks that the shell may reach, sorted.
-std::vector<std::uint32_t> blocks_in_reach(const SiteVoxels& sites, unsigned reach, const Run& run) {
+std::vector<std::uint32_t> blocks_in_reach(const SiteVoxels& sites, unsigned reach, const ExecutionContext& context) {
   constexpr std::size_t tiles_per_piece = 4096;
   const std::size_t pieces = (sites.tiles.size() + tiles_per_piece - 1) / tiles_per_piece;
   std::vector<std::vector<std::uint32_t>> found(pieces);
   const auto r = static_cast<std::int32_t>(reach);
-  parallel_tasks(run, pieces, [&](std::size_t piece) {
+  parallel_tasks(context, pieces, [&](std::size_t piece) {
     std::vector<std::uint32_t>& codes = found[piece];
     for (std::size_t t = piece * tiles_per_piece; t < std::min(sites.tiles.size(), (piece + 1) * tiles_per_piece);
          ++t) {
@@ -56,8 +56,8 @@ std::vector<std::uint32_t> blocks_in_reach(const SiteVoxels& sites, unsigned rea
       const Voxel corner = sites.tiles[t].corner();
       std::array<std::int32_t, 3> first{}, last{};
       for (std::size_t a = 0; a < 3; ++a) {
-        first[a] = std::max(corner[a] + box.first[a] - r, 0) / kBlock;
-        last[a] = std::min(corner[a] + box.last[a] + r, std::int32_t(sites.grid.size[a]) - 1) / kBlock;
+        first[a] = std::max(corner[a] + box.first[a] - r, 0) / block;
+        last[a] = std::min(corner[a] + box.last[a] + r, std::int32_t(sites.grid.size[a]) - 1) / block;
       }
       for (std::int32_t k = first[2]; k <= last[2]; ++k)
         for (std::int32_t j = first[1]; j <= last[1]; ++j)
@@ -70,14 +70,14 @@ std::vector<std::uint32_t> blocks_in_reach(const SiteVoxels& sites, unsigned rea
   });
   std::vector<std::uint32_t> codes;
   for (const auto& list : found) codes.insert(codes.end(), list.begin(), list.end());
-  parallel_sort(run, codes);
+  parallel_sort(context, codes);
   codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
   return codes;
 }
 
 /// Copies the sites of a tile into the window around the block at `corner`.
-void add_tile(const VoxelTile& tile, const Voxel& corner, std::int32_t reach, ShellWindow& window) {
-  const std::int32_t span = kBlock + 2 * reach;
+void add_tile(const VoxelTile& tile, const Voxel& corner, std::int32_t reach, BandWindow& window) {
+  const std::int32_t span = block + 2 * reach;
   const Voxel from = tile.corner();
   const std::int32_t dx = from[0] - corner[0] + reach, dy = from[1] - corner[1] + reach,
                      dz = from[2] - corner[2] + reach;
@@ -91,13 +91,13 @@ void add_tile(const VoxelTile& tile, const Voxel& corner, std::int32_t reach, Sh
 }
 
 /// Gathers the sites around a block.
-void fill_window(const SiteVoxels& sites, const Voxel& corner, std::int32_t reach, ShellWindow& window) {
-  const std::int32_t span = kBlock + 2 * reach;
+void fill_window(const SiteVoxels& sites, const Voxel& corner, std::int32_t reach, BandWindow& window) {
+  const std::int32_t span = block + 2 * reach;
   std::fill_n(window.rows.begin(), span * span, 0);
   std::array<std::int32_t, 3> first{}, last{};
   for (std::size_t a = 0; a < 3; ++a) {
-    first[a] = (corner[a] - reach) >> 3, last[a] = (corner[a] + kBlock - 1 + reach) >> 3;
-    window.size[a] = std::min(shell_block, sites.grid.size[a] - static_cast<unsigned>(corner[a]));
+    first[a] = (corner[a] - reach) >> 3, last[a] = (corner[a] + block - 1 + reach) >> 3;
+    window.size[a] = std::min(band_block, sites.grid.size[a] - static_cast<unsigned>(corner[a]));
   }
   for (std::int32_t k = first[2]; k <= last[2]; ++k)
     for (std::int32_t j = first[1]; j <= last[1]; ++j)
@@ -114,7 +114,7 @@ struct Piece {
 
 class PieceBuilder {
  public:
-  PieceBuilder(const SiteVoxels& sites, const ShellSteps& steps) : sites_(sites), steps_(steps) {}
+  PieceBuilder(const SiteVoxels& sites, const BandSteps& steps) : sites_(sites), steps_(steps) {}
 
   Piece build(const std::uint32_t* codes, std::size_t count) {
     Piece piece;
@@ -128,11 +128,11 @@ class PieceBuilder {
  private:
   void add_block(std::uint32_t code, Piece& piece) {
     const auto at = morton_decode(code);
-    const Voxel corner{at[0] * kBlock, at[1] * kBlock, at[2] * kBlock};
+    const Voxel corner{at[0] * block, at[1] * block, at[2] * block};
     fill_window(sites_, corner, std::int32_t(steps_.reach), window_);
     transform_block(steps_, window_, out_);
     for (unsigned t = 0; t < 8; ++t) {
-      const ShellTileOut& out = out_[t];
+      const BandTileOut& out = out_[t];
       if (out.count == 0) continue;
       VoxelTile tile;
       tile.at = {static_cast<std::uint16_t>(at[0] * 2u + (t & 1)),
@@ -146,41 +146,41 @@ class PieceBuilder {
   }
 
   const SiteVoxels& sites_;
-  const ShellSteps& steps_;
-  ShellWindow window_;
-  ShellBlockOut out_;
+  const BandSteps& steps_;
+  BandWindow window_;
+  BandBlockOut out_;
   std::vector<NearestSite> collected_;
 };
 
 }  // namespace
 
-Shell build_shell(const SiteVoxels& sites, unsigned reach, Run& run) {
-  if (reach < 1 || reach > max_shell_reach)
+NarrowBand build_narrow_band(const SiteVoxels& sites, unsigned reach, ExecutionContext& context) {
+  if (reach < 1 || reach > max_band_reach)
     throw InvalidInput("a shell of " + std::to_string(reach) + " voxels is out of range: choose 1 to 20");
-  return with_threads(run, [&] {
-    const ShellSteps steps(reach);
-    const std::vector<std::uint32_t> blocks = blocks_in_reach(sites, reach, run);
-    std::vector<Piece> pieces((blocks.size() + kBlocksPerPiece - 1) / kBlocksPerPiece);
-    parallel_for(run, pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+  return with_threads(context, [&] {
+    const BandSteps steps(reach);
+    const std::vector<std::uint32_t> blocks = blocks_in_reach(sites, reach, context);
+    std::vector<Piece> pieces((blocks.size() + blocks_per_piece - 1) / blocks_per_piece);
+    parallel_for(context, pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
       const auto builder = std::make_unique<PieceBuilder>(sites, steps);
       for (std::size_t p = begin; p < end; ++p)
-        pieces[p] = builder->build(&blocks[p * kBlocksPerPiece],
-                                   std::min(kBlocksPerPiece, blocks.size() - p * kBlocksPerPiece));
+        pieces[p] = builder->build(&blocks[p * blocks_per_piece],
+                                   std::min(blocks_per_piece, blocks.size() - p * blocks_per_piece));
     });
-    Shell shell;
-    shell.grid_ = sites.grid, shell.reach_ = reach;
+    NarrowBand band;
+    band.grid_ = sites.grid, band.reach_ = reach;
     std::size_t count = 0;
     for (const Piece& piece : pieces) count += piece.tiles.size();
     std::vector<VoxelTile> tiles;
-    tiles.reserve(count), shell.nearest_.reserve(count), shell.pieces_.reserve(pieces.size());
+    tiles.reserve(count), band.nearest_.reserve(count), band.pieces_.reserve(pieces.size());
     for (Piece& piece : pieces) {
       tiles.insert(tiles.end(), piece.tiles.begin(), piece.tiles.end());
-      for (const std::size_t start : piece.start) shell.nearest_.push_back(piece.nearest.get() + start);
-      shell.pieces_.push_back(std::move(piece.nearest));
+      for (const std::size_t start : piece.start) band.nearest_.push_back(piece.nearest.get() + start);
+      band.pieces_.push_back(std::move(piece.nearest));
       piece = {};
     }
-    shell.tiles_ = VoxelTiles(std::move(tiles));
-    return shell;
+    band.tiles_ = VoxelTiles(std::move(tiles));
+    return band;
   });
 }
 

@@ -33,7 +33,7 @@ struct NearestSite {
 ///
 /// A voxel of the shell has a number, tile.begin + tile.rank(x, y, z) or tiles().number(voxel), for arrays of the later
 /// stages; in a tile they follow each other in the order of for_each_voxel().
-class Shell {
+class NarrowBand {
  public:
   const VoxelGrid& grid() const { return grid_; }
   /// d, half the thickness of the shell in voxels.
@@ -57,7 +57,7 @@ class Shell {
   }
 
  private:
-  friend Shell build_shell(const SiteVoxels& sites, unsigned reach, Run& run);
+  friend NarrowBand build_narrow_band(const SiteVoxels& sites, unsigned reach, ExecutionContext& context);
 
   VoxelGrid grid_;
   unsigned reach_ = 0;
@@ -76,7 +76,8 @@ class Shell {
 /// @throws InvalidInput  d is out of range
 /// Based on [NBEDT §3.1]; the separable transform itself is that of Saito, Toriwaki, New algorithms for Euclidean
 /// distance transformation of an n-dimensional digitized picture with applications, Pattern Recognition 27(11), 1994.
-Shell build_shell(const SiteVoxels& sites, unsigned reach, Run& run = Run::silent());
+NarrowBand build_narrow_band(const SiteVoxels& sites, unsigned reach,
+                             ExecutionContext& context = ExecutionContext::silent());
 
 /// The index of a voxel's nearest site in the arrays of `sites`, from which the shell was built. Cost: a few
 /// nanoseconds.

@@ -35,13 +35,13 @@ std::size_t number_sets(std::vector<Index>& roots) {
 
 class Chooser {
  public:
-  Chooser(const ShellSurface& surface, const SiteVoxels& sites, double least_area, Run& run)
+  Chooser(const BandSurface& surface, const SiteVoxels& sites, double min_area, ExecutionContext& context)
       : surface_(surface),
         samples_(surface.samples),
         sites_(sites),
-        least_area_(least_area),
-        run_(run),
-        bricks_(cube_bricks(samples_, run)),
+        min_area_(min_area),
+        context_(context),
+        bricks_(cube_bricks(samples_, context)),
         covered_(sites.size(), 0) {
     result_.chosen.assign(samples_.size(), 0);
     result_.border.assign(samples_.size(), 0);
@@ -68,7 +68,7 @@ class Chooser {
 
   /// Connected parts, and which of them see sites from both sides.
   void find_parts() {
-    part_ = part_roots(samples_, bricks_, run_, [](Index, Index) { return true; });
+    part_ = component_roots(samples_, bricks_, context_, [](Index, Index) { return true; });
     const std::size_t parts = number_sets(part_);
     // A sample for each of the sides that see a site; the sign of the site's own normal may mean nothing.
     for (auto& list : seen_) list.assign(sites_.size(), none);
@@ -126,7 +126,7 @@ class Chooser {
     if (std::find(needs_cut_.begin(), needs_cut_.end(), 1) == needs_cut_.end()) {
       sheet_ = part_;
     } else {
-      sheet_ = part_roots(samples_, bricks_, run_, [this](Index a, Index b) { return same_sheet(a, b); });
+      sheet_ = component_roots(samples_, bricks_, context_, [this](Index a, Index b) { return same_sheet(a, b); });
       count = number_sets(sheet_);
     }
     sheets_.resize(count);
@@ -182,7 +182,7 @@ class Chooser {
     for (const Index s : list)
       if (!covered_[surface_.site[s]]) fresh += samples_.area[s];
     if (fresh < new_sheet * sheet.area) return;
-    if (fresh < least_area_) {
+    if (fresh < min_area_) {
       ++result_.dropped;
       return;
     }
@@ -241,14 +241,14 @@ class Chooser {
   /// What is left over between sheets, and smaller than the smallest sheet.
   void drop_scraps() {
     if (result_.cut == 0) return;
-    const std::vector<Index> roots = part_roots(samples_, bricks_, run_, [this](Index a, Index b) {
+    const std::vector<Index> roots = component_roots(samples_, bricks_, context_, [this](Index a, Index b) {
       return result_.chosen[a] && result_.chosen[b] && sheet_[a] == sheet_[b];
     });
     std::vector<float> area(samples_.size(), 0);
     for (std::size_t i = 0; i < roots.size(); ++i)
       if (result_.chosen[i]) area[roots[i]] += samples_.area[i];
     for (std::size_t i = 0; i < roots.size(); ++i) {
-      if (!result_.chosen[i] || area[roots[i]] >= least_area_) continue;
+      if (!result_.chosen[i] || area[roots[i]] >= min_area_) continue;
       result_.chosen[i] = 0;
       result_.dropped += roots[i] == i;
     }
@@ -274,7 +274,7 @@ class Chooser {
   void for_links(const Visit& visit) {
     CubeWalker walker(samples_);
     for (const CubeBrick& brick : bricks_) {
-      run_.throw_if_cancelled();
+      context_.throw_if_cancelled();
       walker.walk(brick, [&](const Index* loop, int n) {
         for (int i = 0; i < n; ++i) {
           const Index s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
@@ -285,11 +285,11 @@ class Chooser {
     }
   }
 
-  const ShellSurface& surface_;
+  const BandSurface& surface_;
   const SampleSet& samples_;
   const SiteVoxels& sites_;
-  double least_area_;
-  Run& run_;
+  double min_area_;
+  ExecutionContext& context_;
   std::vector<CubeBrick> bricks_;
   std::vector<char> covered_;   ///< by site: 1 beside what is covered, 2 covered itself
   std::vector<Voxel> voxel_;    ///< by site
@@ -302,13 +302,13 @@ class Chooser {
 
 }  // namespace
 
-Sheets choose_sheets(const ShellSurface& surface, const SiteVoxels& sites, double least_area, Run& run) {
-  return Chooser(surface, sites, least_area, run).result();
+Sheets choose_sheets(const BandSurface& surface, const SiteVoxels& sites, double min_area, ExecutionContext& context) {
+  return Chooser(surface, sites, min_area, context).result();
 }
 
-Sheets outer_sheets(const ShellSurface& surface, Run& run) {
+Sheets outer_sheets(const BandSurface& surface, ExecutionContext& context) {
   const SampleSet& samples = surface.samples;
-  const SurfaceParts parts = surface_parts(samples, run);
+  const SurfaceComponents parts = surface_components(samples, context);
   const std::vector<double> volume = volumes_within(parts, samples);
   Sheets result;
   result.chosen.resize(samples.size());

@@ -25,9 +25,9 @@ struct Sheets {
 ///
 /// @param least_area  of a sheet worth keeping, model units squared
 /// Guarantee: same result for any number of threads. Cost: about 0.2 µs per sample.
-Sheets choose_sheets(const ShellSurface& surface, const SiteVoxels& sites, double least_area, Run& run);
+Sheets choose_sheets(const BandSurface& surface, const SiteVoxels& sites, double min_area, ExecutionContext& context);
 
 /// The parts that border on the outside: where what floods in from the grid's border comes to an end. Nothing is cut.
-Sheets outer_sheets(const ShellSurface& surface, Run& run);
+Sheets outer_sheets(const BandSurface& surface, ExecutionContext& context);
 
 }  // namespace evenmesh

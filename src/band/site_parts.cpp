@@ -39,14 +39,14 @@ void join_array(std::vector<SitePart>& parts, Array SitePart::*array, Array& joi
 
 }  // namespace
 
-SiteVoxels join_parts(const VoxelGrid& grid, std::vector<SitePart>& parts, const Run& run) {
+SiteVoxels join_parts(const VoxelGrid& grid, std::vector<SitePart>& parts, const ExecutionContext& context) {
   std::size_t count = 0;
   for (const SitePart& part : parts) count += part.x.size();
   if (count > std::numeric_limits<std::uint32_t>::max())
     throw InvalidInput("more than 4 billion site voxels: lower the resolution");
   SiteVoxels sites;
   sites.grid = grid;
-  parallel_tasks(run, 6, [&](std::size_t i) {
+  parallel_tasks(context, 6, [&](std::size_t i) {
     switch (i) {
       case 0:
         join_array(parts, &SitePart::x, sites.x);

@@ -24,7 +24,7 @@ struct SitePart {
 
 /// The sites of all parts, which are used up.
 /// @throws InvalidInput  more than 4 billion sites
-SiteVoxels join_parts(const VoxelGrid& grid, std::vector<SitePart>& parts, const Run& run);
+SiteVoxels join_parts(const VoxelGrid& grid, std::vector<SitePart>& parts, const ExecutionContext& context);
 
 /// Bricks of 16³ voxels are the unit of work: so their Morton codes have 30 bits.
 inline constexpr int brick_bits = 4;
@@ -96,13 +96,14 @@ class BrickSites {
 
 /// Calls work(bricks, part) for pieces of neighbouring bricks, in parallel, and joins the parts.
 template <typename Work>
-SiteVoxels collect_sites(const VoxelGrid& grid, std::span<const BrickItems> bricks, const Run& run, const Work& work) {
+SiteVoxels collect_sites(const VoxelGrid& grid, std::span<const BrickItems> bricks, const ExecutionContext& context,
+                         const Work& work) {
   constexpr std::size_t per_part = 32;
   std::vector<SitePart> parts((bricks.size() + per_part - 1) / per_part);
-  parallel_tasks(run, parts.size(), [&](std::size_t p) {
+  parallel_tasks(context, parts.size(), [&](std::size_t p) {
     work(bricks.subspan(p * per_part, std::min(per_part, bricks.size() - p * per_part)), parts[p]);
   });
-  return join_parts(grid, parts, run);
+  return join_parts(grid, parts, context);
 }
 
 }  // namespace evenmesh

@@ -8,17 +8,17 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t kMaxResolution = 8192;
-constexpr unsigned kMaxMargin = 64;
+constexpr std::size_t max_resolution = 8192;
+constexpr unsigned max_margin = 64;
 
 }  // namespace
 
 VoxelGrid make_voxel_grid(const Box& bounds, std::size_t resolution, unsigned margin) {
   if (bounds.empty() || !is_finite(bounds.lo) || !is_finite(bounds.hi) || !(bounds.longest_side() > 0))
     throw InvalidInput("the bounds are empty or not finite: give a box with finite corners and at least one side > 0");
-  if (resolution < 1 || resolution > kMaxResolution)
+  if (resolution < 1 || resolution > max_resolution)
     throw InvalidInput("resolution " + std::to_string(resolution) + " is out of range: choose 1 to 8192");
-  if (margin < 1 || margin > kMaxMargin)
+  if (margin < 1 || margin > max_margin)
     throw InvalidInput("a margin of " + std::to_string(margin) + " voxels is out of range: choose 1 to 64");
   VoxelGrid grid;
   grid.side = bounds.longest_side() / static_cast<double>(resolution);

@@ -41,7 +41,8 @@ struct SiteVoxels {
 /// 12 per vertex and 16 per site more than the result.
 /// @throws InvalidInput  an index is out of range, a coordinate not finite or 7·10^8 voxels away, or there are more
 /// than 4 billion sites
-SiteVoxels voxelize_mesh(const Mesh& mesh, const VoxelGrid& grid, Run& run = Run::silent());
+SiteVoxels voxelize_mesh(const Mesh& mesh, const VoxelGrid& grid,
+                         ExecutionContext& context = ExecutionContext::silent());
 
 /// The voxels that hold a point of a cloud; a point on a face belongs to the upper voxel.
 ///
@@ -49,7 +50,7 @@ SiteVoxels voxelize_mesh(const Mesh& mesh, const VoxelGrid& grid, Run& run = Run
 /// @param normals  one per point, not all of them zero, or none
 /// @throws InvalidInput  as many normals as points are needed, or none; a point or normal is not finite
 SiteVoxels voxelize_points(std::span<const Vec3> points, std::span<const Vec3> normals, const VoxelGrid& grid,
-                           Run& run = Run::silent());
+                           ExecutionContext& context = ExecutionContext::silent());
 
 /// The voxels on whose twelve edges the samples of a surface lie: the cells of the samples' grid that the surface
 /// crosses.
@@ -58,12 +59,14 @@ SiteVoxels voxelize_points(std::span<const Vec3> points, std::span<const Vec3> n
 /// surface separate inside from outside. Cost: O(samples).
 /// @param margin  voxels between the samples' grid and the border of the voxels', 0 to 64; d − 1 or more for a shell
 /// that reaches d voxels
-SiteVoxels voxelize_samples(const SampleSet& samples, unsigned margin, Run& run = Run::silent());
+SiteVoxels voxelize_samples(const SampleSet& samples, unsigned margin,
+                            ExecutionContext& context = ExecutionContext::silent());
 
 /// The voxels on whose edges a field changes its sign, within `bounds` (empty: the grid's).
 ///
 /// Interval arithmetic prunes what f does not reach, so the cost goes with the surface: see sample_shape().
 /// Surface points and normals as voxelize_samples().
-SiteVoxels voxelize_field(const Field& field, const VoxelGrid& grid, const Box& bounds = {}, Run& run = Run::silent());
+SiteVoxels voxelize_field(const Field& field, const VoxelGrid& grid, const Box& bounds = {},
+                          ExecutionContext& context = ExecutionContext::silent());
 
 }  // namespace evenmesh

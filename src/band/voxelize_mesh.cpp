@@ -15,7 +15,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t kTrianglesPerPiece = 4096;
+constexpr std::size_t triangles_per_piece = 4096;
 
 /// A mesh in voxels, snapped to the lattice.
 struct SnappedMesh {
@@ -30,8 +30,8 @@ struct SnappedMesh {
   }
 };
 
-SnappedMesh snap(const Mesh& mesh, const VoxelGrid& grid, const Run& run) {
-  check_mesh(mesh, run);
+SnappedMesh snap(const Mesh& mesh, const VoxelGrid& grid, const ExecutionContext& context) {
+  check_mesh(mesh, context);
   SnappedMesh snapped{mesh, grid, 16, {}};
   const Box box = mesh.bounds();
   double reach = 0;
@@ -41,7 +41,7 @@ SnappedMesh snap(const Mesh& mesh, const VoxelGrid& grid, const Run& run) {
   while (snapped.bits > 0 && std::ldexp(reach, snapped.bits) > largest_lattice_coordinate) --snapped.bits;
   if (!(std::ldexp(reach, snapped.bits) <= largest_lattice_coordinate))
     throw InvalidInput("the mesh is too large for the grid: enlarge its bounds or lower the resolution");
-  snapped.points = snap_vertices(mesh, grid.origin, grid.side, snapped.bits, run);
+  snapped.points = snap_vertices(mesh, grid.origin, grid.side, snapped.bits, context);
   return snapped;
 }
 
@@ -59,16 +59,17 @@ bool is_within(const LatticeTriangle& corners, const VoxelGrid& grid, int bits) 
 }
 
 /// Pairs of a brick and a triangle that touches it: brick_key(), sorted.
-std::vector<std::uint64_t> bin_triangles(const SnappedMesh& snapped, std::size_t& outside, const Run& run) {
+std::vector<std::uint64_t> bin_triangles(const SnappedMesh& snapped, std::size_t& outside,
+                                         const ExecutionContext& context) {
   const std::size_t count = snapped.mesh.triangles.size(),
-                    pieces = (count + kTrianglesPerPiece - 1) / kTrianglesPerPiece;
+                    pieces = (count + triangles_per_piece - 1) / triangles_per_piece;
   std::vector<std::vector<std::uint64_t>> found(pieces);
   std::atomic<std::size_t> cut{0};
   const CellBox bricks = all_cells(snapped.grid, brick_bits);
-  parallel_for(run, pieces, 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, pieces, 1, [&](std::size_t begin, std::size_t end) {
     TriangleCells touched;
     for (std::size_t piece = begin; piece < end; ++piece)
-      for (std::size_t t = piece * kTrianglesPerPiece; t < std::min(count, (piece + 1) * kTrianglesPerPiece); ++t) {
+      for (std::size_t t = piece * triangles_per_piece; t < std::min(count, (piece + 1) * triangles_per_piece); ++t) {
         const LatticeTriangle corners = snapped.corners(t);
         if (!is_within(corners, snapped.grid, snapped.bits)) cut.fetch_add(1, std::memory_order_relaxed);
         touched.set(corners, snapped.bits + brick_bits, bricks);
@@ -84,7 +85,7 @@ std::vector<std::uint64_t> bin_triangles(const SnappedMesh& snapped, std::size_t
     pairs.insert(pairs.end(), list.begin(), list.end());
     std::vector<std::uint64_t>().swap(list);
   }
-  parallel_sort(run, pairs);
+  parallel_sort(context, pairs);
   return pairs;
 }
 
@@ -176,7 +177,7 @@ class BrickVoxelizer {
   }
 
  private:
-  static constexpr std::size_t kVoxels = std::size_t{1} << (3 * brick_bits);
+  static constexpr std::size_t voxels = std::size_t{1} << (3 * brick_bits);
 
   void add(std::uint32_t triangle, const Voxel& corner, const CellBox& box) {
     touched_.set(snapped_.corners(triangle), snapped_.bits, box);
@@ -195,14 +196,14 @@ class BrickVoxelizer {
   const SnappedMesh& snapped_;
   CellBox whole_;
   TriangleCells touched_;
-  std::vector<std::uint32_t> voxels_ = std::vector<std::uint32_t>(kVoxels);  // that one triangle touches
-  std::vector<float> height_ = std::vector<float>(kVoxels), within_ = std::vector<float>(kVoxels);
+  std::vector<std::uint32_t> voxels_ = std::vector<std::uint32_t>(voxels);  // that one triangle touches
+  std::vector<float> height_ = std::vector<float>(voxels), within_ = std::vector<float>(voxels);
   Sites sites_;
 };
 
-std::vector<PackedNormal> triangle_normals(const SnappedMesh& snapped, const Run& run) {
+std::vector<PackedNormal> triangle_normals(const SnappedMesh& snapped, const ExecutionContext& context) {
   std::vector<PackedNormal> normals(snapped.mesh.triangles.size());
-  parallel_for(run, normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       // In voxels, so that small models do not underflow.
       std::array<Vec3, 3> p = corners_of(snapped.mesh, t);
@@ -215,20 +216,20 @@ std::vector<PackedNormal> triangle_normals(const SnappedMesh& snapped, const Run
 
 }  // namespace
 
-SiteVoxels voxelize_mesh(const Mesh& mesh, const VoxelGrid& grid, Run& run) {
-  return with_threads(run, [&] {
-    const SnappedMesh snapped = snap(mesh, grid, run);
+SiteVoxels voxelize_mesh(const Mesh& mesh, const VoxelGrid& grid, ExecutionContext& context) {
+  return with_threads(context, [&] {
+    const SnappedMesh snapped = snap(mesh, grid, context);
     std::size_t outside = 0;
-    const std::vector<std::uint64_t> pairs = bin_triangles(snapped, outside, run);
+    const std::vector<std::uint64_t> pairs = bin_triangles(snapped, outside, context);
     const std::vector<BrickItems> bricks = bricks_of(pairs);
-    SiteVoxels sites = collect_sites(grid, bricks, run, [&](std::span<const BrickItems> some, SitePart& part) {
+    SiteVoxels sites = collect_sites(grid, bricks, context, [&](std::span<const BrickItems> some, SitePart& part) {
       BrickVoxelizer voxelizer(snapped);
       for (const BrickItems& brick : some) voxelizer.voxelize(brick, part);
     });
     sites.outside = outside;
-    const std::vector<PackedNormal> normals = triangle_normals(snapped, run);
+    const std::vector<PackedNormal> normals = triangle_normals(snapped, context);
     sites.normal.resize(sites.size());
-    parallel_for(run, sites.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, sites.size(), 65536, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) sites.normal[i] = normals[sites.source[i]];
     });
     return sites;

@@ -52,13 +52,13 @@ void finish(BrickSites<MeanSite>& sites, const Voxel& corner, double side, bool 
   });
 }
 
-void check_points(std::span<const Vec3> points, std::span<const Vec3> normals, const Run& run) {
+void check_points(std::span<const Vec3> points, std::span<const Vec3> normals, const ExecutionContext& context) {
   if (!normals.empty() && normals.size() != points.size())
     throw InvalidInput(std::to_string(points.size()) + " points come with " + std::to_string(normals.size()) +
                        " normals: give each point one, or none");
   if (points.size() > std::numeric_limits<std::uint32_t>::max())
     throw InvalidInput("more than 4 billion points: thin them out");
-  parallel_for(run, points.size(), 65536, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, points.size(), 65536, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (!is_finite(points[i]) || (!normals.empty() && !is_finite(normals[i])))
         throw InvalidInput("point " + std::to_string(i) + " is not finite: remove it");
@@ -76,16 +76,17 @@ Voxel voxel_of(const Vec3& point, const VoxelGrid& grid) {
 }
 
 /// Bricks with their points, sorted; points outside the grid are left out.
-std::vector<std::uint64_t> bin_points(std::span<const Vec3> points, const VoxelGrid& grid, const Run& run) {
+std::vector<std::uint64_t> bin_points(std::span<const Vec3> points, const VoxelGrid& grid,
+                                      const ExecutionContext& context) {
   constexpr std::uint64_t outside = ~std::uint64_t{0};
   std::vector<std::uint64_t> keys(points.size());
-  parallel_for(run, points.size(), 65536, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, points.size(), 65536, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Voxel v = voxel_of(points[i], grid);
       keys[i] = grid.contains(v) ? brick_key(brick_of(v), i) : outside;
     }
   });
-  parallel_sort(run, keys);
+  parallel_sort(context, keys);
   keys.erase(std::lower_bound(keys.begin(), keys.end(), outside), keys.end());
   return keys;
 }
@@ -109,7 +110,7 @@ EdgeCells cells_around(const SampleBlock& block, EdgeCode edge) {
 
 /// Bricks with the blocks whose samples may mark their voxels, sorted.
 std::vector<std::uint64_t> bin_blocks(const SampleSet& samples, const VoxelGrid& grid, unsigned margin,
-                                      const Run& run) {
+                                      const ExecutionContext& context) {
   std::vector<std::uint64_t> keys;
   for (std::size_t b = 0; b < samples.blocks.size(); ++b) {
     Voxel first{}, last{};
@@ -122,7 +123,7 @@ std::vector<std::uint64_t> bin_blocks(const SampleSet& samples, const VoxelGrid&
       for (std::int32_t j = first[1]; j <= last[1]; ++j)
         for (std::int32_t i = first[0]; i <= last[0]; ++i) keys.push_back(brick_key({i, j, k}, b));
   }
-  parallel_sort(run, keys);
+  parallel_sort(context, keys);
   return keys;
 }
 
@@ -144,10 +145,11 @@ void add_block(const SampleSet& samples, const SampleBlock& block, const VoxelGr
   }
 }
 
-SiteVoxels voxelize_on(const SampleSet& samples, const VoxelGrid& grid, unsigned margin, const Run& run) {
-  const std::vector<std::uint64_t> keys = bin_blocks(samples, grid, margin, run);
+SiteVoxels voxelize_on(const SampleSet& samples, const VoxelGrid& grid, unsigned margin,
+                       const ExecutionContext& context) {
+  const std::vector<std::uint64_t> keys = bin_blocks(samples, grid, margin, context);
   const std::vector<BrickItems> bricks = bricks_of(keys);
-  return collect_sites(grid, bricks, run, [&](std::span<const BrickItems> some, SitePart& part) {
+  return collect_sites(grid, bricks, context, [&](std::span<const BrickItems> some, SitePart& part) {
     BrickSites<MeanSite> sites;
     for (const BrickItems& brick : some) {
       for (const std::uint64_t key : brick.keys)
@@ -160,12 +162,12 @@ SiteVoxels voxelize_on(const SampleSet& samples, const VoxelGrid& grid, unsigned
 }  // namespace
 
 SiteVoxels voxelize_points(std::span<const Vec3> points, std::span<const Vec3> normals, const VoxelGrid& grid,
-                           Run& run) {
-  return with_threads(run, [&] {
-    check_points(points, normals, run);
-    const std::vector<std::uint64_t> keys = bin_points(points, grid, run);
+                           ExecutionContext& context) {
+  return with_threads(context, [&] {
+    check_points(points, normals, context);
+    const std::vector<std::uint64_t> keys = bin_points(points, grid, context);
     const std::vector<BrickItems> bricks = bricks_of(keys);
-    SiteVoxels sites = collect_sites(grid, bricks, run, [&](std::span<const BrickItems> some, SitePart& part) {
+    SiteVoxels sites = collect_sites(grid, bricks, context, [&](std::span<const BrickItems> some, SitePart& part) {
       BrickSites<MeanSite> means;
       for (const BrickItems& brick : some) {
         for (const std::uint64_t key : brick.keys) {
@@ -182,20 +184,21 @@ SiteVoxels voxelize_points(std::span<const Vec3> points, std::span<const Vec3> n
   });
 }
 
-SiteVoxels voxelize_samples(const SampleSet& samples, unsigned margin, Run& run) {
+SiteVoxels voxelize_samples(const SampleSet& samples, unsigned margin, ExecutionContext& context) {
   if (margin > 64)
     throw InvalidInput("a margin of " + std::to_string(margin) + " voxels is out of range: choose 0 to 64");
   VoxelGrid grid;
   grid.side = samples.grid.spacing;
   grid.origin = samples.grid.point(-double(margin), -double(margin), -double(margin));
   for (std::size_t a = 0; a < 3; ++a) grid.size[a] = samples.grid.size[a] - 1 + 2 * margin;
-  return with_threads(run, [&] { return voxelize_on(samples, grid, margin, run); });
+  return with_threads(context, [&] { return voxelize_on(samples, grid, margin, context); });
 }
 
-SiteVoxels voxelize_field(const Field& field, const VoxelGrid& grid, const Box& bounds, Run& run) {
+SiteVoxels voxelize_field(const Field& field, const VoxelGrid& grid, const Box& bounds, ExecutionContext& context) {
   Grid corners{grid.origin, grid.side, {}};
   for (std::size_t a = 0; a < 3; ++a) corners.size[a] = grid.size[a] + 1;
-  return with_threads(run, [&] { return voxelize_on(sample_field(field, corners, bounds, run), grid, 0, run); });
+  return with_threads(context,
+                      [&] { return voxelize_on(sample_field(field, corners, bounds, context), grid, 0, context); });
 }
 
 }  // namespace evenmesh

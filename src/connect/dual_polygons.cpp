@@ -99,7 +99,7 @@ DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& pol
   return mesh;
 }
 
-std::size_t remove_pillows(std::vector<Triangle>& triangles, std::size_t vertices) {
+std::size_t remove_two_triangle_spheres(std::vector<Triangle>& triangles, std::size_t vertices) {
   std::vector<std::uint32_t> used(vertices, 0);
   for (const Triangle& t : triangles)
     for (const std::uint32_t v : t) ++used[v];
@@ -124,7 +124,7 @@ Defects manifold_defects(std::span<const Triangle> triangles, std::size_t vertic
   }
   if (!bad.empty()) return bad;
   for (std::size_t v = 0; v < vertices; ++v)
-    if (edges.fans(v) > 1) bad.push_back({static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(v)});
+    if (edges.umbrellas(v) > 1) bad.push_back({static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(v)});
   return bad;
 }
 

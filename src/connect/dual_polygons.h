@@ -27,7 +27,7 @@ DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& pol
 
 /// Takes out pairs of triangles that share all three corners with each other and none with any other triangle: specks
 /// of three cells, closed but flat. Returns how many.
-std::size_t remove_pillows(std::vector<Triangle>& triangles, std::size_t vertices);
+std::size_t remove_two_triangle_spheres(std::vector<Triangle>& triangles, std::size_t vertices);
 
 /// What keeps triangles from being an oriented two-manifold; empty when they are one.
 /// @param open  it may have a boundary, also where several fans of triangles meet in a vertex

@@ -14,8 +14,9 @@ using Link = std::pair<std::uint32_t, std::uint32_t>;
 
 class Flood {
  public:
-  Flood(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds, Run& run)
-      : samples_(samples), labels_(labels), seeds_(seeds), run_(run), bricks_(cube_bricks(samples, run)) {}
+  Flood(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
+        ExecutionContext& context)
+      : samples_(samples), labels_(labels), seeds_(seeds), context_(context), bricks_(cube_bricks(samples, context)) {}
 
   std::size_t result() {
     find_strays();
@@ -39,8 +40,8 @@ class Flood {
         if (labels_[i] != no_label)
           next_to[labels_[i]] = std::min(next_to[labels_[i]], {squared_distance(i, labels_[i]), i});
       }
-    const std::vector<std::uint32_t> root =
-        part_roots(samples_, bricks_, run_, [&](std::uint32_t s, std::uint32_t t) { return labels_[s] == labels_[t]; });
+    const std::vector<std::uint32_t> root = component_roots(
+        samples_, bricks_, context_, [&](std::uint32_t s, std::uint32_t t) { return labels_[s] == labels_[t]; });
     stray_.resize(samples_.size());
     for (std::uint32_t i = 0; i < samples_.size(); ++i)
       stray_[i] = labels_[i] != no_label && root[i] != root[next_to[labels_[i]].second];
@@ -49,7 +50,7 @@ class Flood {
   /// Between strays and their neighbours, both ways round, sorted.
   void find_links() {
     std::vector<std::vector<Link>> found(bricks_.size());
-    for_loops(samples_, bricks_, run_, [&](std::size_t b, const std::uint32_t* loop, int n) {
+    for_loops(samples_, bricks_, context_, [&](std::size_t b, const std::uint32_t* loop, int n) {
       for (int i = 0; i < n; ++i) {
         const std::uint32_t s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
         if (labels_[s] == no_label || labels_[t] == no_label) continue;
@@ -58,7 +59,7 @@ class Flood {
       }
     });
     for (const auto& list : found) links_.insert(links_.end(), list.begin(), list.end());
-    parallel_sort(run_, links_);
+    parallel_sort(context_, links_);
   }
 
   std::size_t grow() {
@@ -74,7 +75,7 @@ class Flood {
       if (const std::uint32_t s = links_[i].first; !stray_[s] && (i == 0 || links_[i - 1].first != s)) spread(s);
     std::size_t changed = 0;
     for (std::size_t steps = 0; !front.empty(); ++steps) {
-      if (steps % 65536 == 0) run_.throw_if_cancelled();
+      if (steps % 65536 == 0) context_.throw_if_cancelled();
       const auto [distance, sample, label] = front.top();
       front.pop();
       if (!stray_[sample]) continue;
@@ -89,7 +90,7 @@ class Flood {
   const SampleSet& samples_;
   std::vector<std::uint32_t>& labels_;
   std::span<const Vec3> seeds_;
-  Run& run_;
+  ExecutionContext& context_;
   std::vector<CubeBrick> bricks_;
   std::vector<Vec3> position_;
   std::vector<char> stray_;
@@ -99,8 +100,8 @@ class Flood {
 }  // namespace
 
 std::size_t flood_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
-                         Run& run) {
-  return Flood(samples, labels, seeds, run).result();
+                         ExecutionContext& context) {
+  return Flood(samples, labels, seeds, context).result();
 }
 
 }  // namespace evenmesh

@@ -20,6 +20,6 @@ namespace evenmesh {
 /// core.
 /// Based on [NBEDT §3.4].
 std::size_t flood_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
-                         Run& run);
+                         ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -313,9 +313,9 @@ std::vector<Vec3> normals_at_seeds(const SampleSet& samples, const std::vector<I
 }  // namespace
 
 Fragments connect_fragments(const SampleSet& samples, std::span<const Vec3> seeds, const FragmentOptions& options,
-                            Run& run) {
+                            ExecutionContext& context) {
   const double margin = options.margin > 0 ? options.margin : std::numbers::sqrt3 * samples.grid.spacing;
-  SeedGraph graph = seed_graph(samples, seeds, margin, run);
+  SeedGraph graph = seed_graph(samples, seeds, margin, context);
   Fragments result;
   result.complex.labels = seeds.size();
   if (seeds.empty()) return result;

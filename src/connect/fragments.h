@@ -46,6 +46,6 @@ struct FragmentOptions {
 /// Based on [Raster2Mesh §4.3]; the inequality of x_edges is printed there the other way round, and seeds on a common
 /// sphere are told by their distance from a sample instead of from each other, which would reject a square.
 Fragments connect_fragments(const SampleSet& samples, std::span<const Vec3> seeds, const FragmentOptions& options,
-                            Run& run);
+                            ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -19,18 +19,18 @@ constexpr double tiny_piece = 0.1;  ///< of a mean cell
 /// What one pass over all cubes collects.
 class Complex {
  public:
-  Complex(const SampleSet& samples, std::vector<Index>& labels, std::size_t label_count, Run& run)
+  Complex(const SampleSet& samples, std::vector<Index>& labels, std::size_t label_count, ExecutionContext& context)
       : samples_(samples),
         labels_(labels),
-        run_(run),
-        bricks_(cube_bricks(samples, run)),
-        sets_(samples, bricks_, run),
+        context_(context),
+        bricks_(cube_bricks(samples, context)),
+        sets_(samples, bricks_, context),
         polygons_(bricks_.size()),
         euler_(label_count) {}
 
   void link() {
     tbb::enumerable_thread_specific<Tally> tallies([&] { return Tally(samples_, euler_.size()); });
-    parallel_for(run_, bricks_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context_, bricks_.size(), 64, [&](std::size_t begin, std::size_t end) {
       Tally& tally = tallies.local();
       for (std::size_t b = begin; b < end; ++b) link_brick(b, tally);
     });
@@ -38,14 +38,14 @@ class Complex {
       for (std::size_t l = 0; l < euler_.size(); ++l) euler_[l] += tally.twice_euler[l];
       loops_ += tally.loops;
     }
-    sets_.settle(run_);
+    sets_.settle(context_);
     collect_roots();
   }
 
   /// The polygons of these bricks again, after some labels changed.
   void refresh_polygons(const std::vector<char>& brick_dirty) {
     tbb::enumerable_thread_specific<CubeWalker> walkers([&] { return CubeWalker(samples_); });
-    parallel_for(run_, bricks_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context_, bricks_.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         if (!brick_dirty[b]) continue;
         polygons_[b].clear();
@@ -102,22 +102,22 @@ class Complex {
 
   /// Stores the loop as (count, samples): one sample for each run of equal labels, when there are three runs or more.
   void add_polygon(std::size_t b, const Index* loop, int n) {
-    Index run[12];
+    Index context[12];
     Index runs = 0;
     for (int i = 0; i < n; ++i) {
       if (labels_[loop[i]] == no_label) return;
-      if (labels_[loop[i]] != labels_[loop[i == 0 ? n - 1 : i - 1]]) run[runs++] = loop[i];
+      if (labels_[loop[i]] != labels_[loop[i == 0 ? n - 1 : i - 1]]) context[runs++] = loop[i];
     }
     if (runs < 3) return;
     auto& polygons = polygons_[b];
     polygons.push_back(runs);
-    polygons.insert(polygons.end(), run, run + runs);
+    polygons.insert(polygons.end(), context, context + runs);
   }
 
   void collect_roots() {
     constexpr std::size_t piece = 1 << 16;
     std::vector<std::vector<Index>> of_piece((samples_.size() + piece - 1) / piece);
-    parallel_tasks(run_, of_piece.size(), [&](std::size_t p) {
+    parallel_tasks(context_, of_piece.size(), [&](std::size_t p) {
       for (std::size_t i = p * piece; i < std::min(samples_.size(), (p + 1) * piece); ++i)
         if (sets_.parent()[i] == i && labels_[i] != no_label) of_piece[p].push_back(static_cast<Index>(i));
     });
@@ -126,7 +126,7 @@ class Complex {
 
   const SampleSet& samples_;
   std::vector<Index>& labels_;
-  Run& run_;
+  ExecutionContext& context_;
   std::vector<CubeBrick> bricks_;
   BrickUnion sets_;
   std::vector<Index> roots_;
@@ -145,7 +145,7 @@ struct Piece {
 /// All pieces of the labels that have several, by label; first the one that keeps it: the largest, or where the seed is
 /// held the nearest.
 std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels, Complex& complex,
-                                          const std::vector<Index>& piece_count, std::span<const Vec3> held) {
+                                          const std::vector<Index>& piece_count, std::span<const Vec3> fixed) {
   auto& parent = complex.parent();
   std::vector<Piece> pieces;
   std::vector<std::pair<Index, Index>> piece_of_root;  // (root, index into pieces), ascending
@@ -165,7 +165,7 @@ std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::v
       const Vec3 place = center + Vec3{samples.x[i], samples.y[i], samples.z[i]};
       piece.area += samples.area[i];
       piece.moment += double(samples.area[i]) * place;
-      if (labels[i] < held.size()) piece.from_seed = std::min(piece.from_seed, squared_norm(place - held[labels[i]]));
+      if (labels[i] < fixed.size()) piece.from_seed = std::min(piece.from_seed, squared_norm(place - fixed[labels[i]]));
     }
   }
   std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
@@ -182,9 +182,9 @@ class Splitter {
       : samples_(samples), labels_(labels), complex_(complex), result_(result) {}
 
   /// @param piece_count  by given label
-  void split(const std::vector<Index>& piece_count, double mean_cell, std::span<const Vec3> held) {
+  void split(const std::vector<Index>& piece_count, double mean_cell, std::span<const Vec3> fixed) {
     const std::size_t given_labels = piece_count.size();
-    pieces_ = pieces_of_split_labels(samples_, labels_, complex_, piece_count, held);
+    pieces_ = pieces_of_split_labels(samples_, labels_, complex_, piece_count, fixed);
     result_.labels = given_labels;
     if (pieces_.empty()) return;
     std::vector<std::pair<Index, Index>> label_of_root, tiny;
@@ -287,18 +287,18 @@ class Splitter {
 }  // namespace
 
 LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
-                            Run& run, std::size_t held) {
+                            ExecutionContext& context, std::size_t fixed) {
   LabelComplex result;
-  Complex complex(samples, labels, seeds.size(), run);
+  Complex complex(samples, labels, seeds.size(), context);
   complex.link();
   result.surface_euler = complex.surface_euler();
   std::vector<Index> piece_count(seeds.size(), 0);
   for (const Index root : complex.roots()) ++piece_count[labels[root]];
   Splitter(samples, labels, complex, result)
-      .split(piece_count, samples.total_area / static_cast<double>(seeds.size()), seeds.first(held));
+      .split(piece_count, samples.total_area / static_cast<double>(seeds.size()), seeds.first(fixed));
 
   std::vector<Vec3> positions(seeds.begin(), seeds.end());
-  for (const CellPiece& piece : result.pieces) positions.push_back(piece.centroid);
+  for (const CellComponent& piece : result.pieces) positions.push_back(piece.centroid);
   const bool open = std::find(labels.begin(), labels.end(), no_label) != labels.end();
   const DualMesh dual = triangulate_polygons(complex.polygons(), labels, positions, open);
   result.triangles = dual.triangles;

@@ -15,7 +15,7 @@ namespace evenmesh {
 inline constexpr std::uint32_t no_label = 0xffffffffu;
 
 /// A connected piece of a cell that is not the one which keeps the label.
-struct CellPiece {
+struct CellComponent {
   std::uint32_t label = 0;      ///< the cell it comes from
   std::uint32_t new_label = 0;  ///< label it now has: a new one, or that of a neighbour when it is tiny
   double area = 0;
@@ -24,10 +24,10 @@ struct CellPiece {
 
 /// The dual of a labelling.
 struct LabelComplex {
-  std::vector<Triangle> triangles;  ///< of labels, counter-clockwise from outside
-  std::size_t labels = 0;           ///< labels in use, after splitting; new ones follow the given ones
-  std::vector<CellPiece> pieces;    ///< pieces that became cells of their own, in order of new label
-  std::int64_t surface_euler = 0;   ///< χ of the sampled surface; the mesh must have it (dust apart)
+  std::vector<Triangle> triangles;    ///< of labels, counter-clockwise from outside
+  std::size_t labels = 0;             ///< labels in use, after splitting; new ones follow the given ones
+  std::vector<CellComponent> pieces;  ///< pieces that became cells of their own, in order of new label
+  std::int64_t surface_euler = 0;     ///< χ of the sampled surface; the mesh must have it (dust apart)
   /// Where seeds are needed, sorted: pairs of labels whose cells meet along several arcs; (l, l) for a cell that is not
   /// a disk or meets itself around a corner.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> defects;
@@ -46,6 +46,6 @@ struct LabelComplex {
 /// Where samples have no label the surface has a boundary; several fans of triangles may then meet in one vertex there.
 /// Same bits for any number of threads. Cost: about 60 ns per sample and core.
 LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
-                            Run& run, std::size_t held = 0);
+                            ExecutionContext& context, std::size_t fixed = 0);
 
 }  // namespace evenmesh

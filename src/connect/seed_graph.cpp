@@ -176,15 +176,15 @@ void append(std::vector<Item>& to, const std::vector<Item>& from) {
 
 }  // namespace
 
-SeedGraph seed_graph(const SampleSet& samples, std::span<const Vec3> seeds, double margin, Run& run) {
+SeedGraph seed_graph(const SampleSet& samples, std::span<const Vec3> seeds, double margin, ExecutionContext& context) {
   constexpr std::size_t chunk = 64;  // blocks
   SeedGraph graph;
   graph.nearest.assign(samples.size(), 0);
   if (seeds.empty()) return graph;
   const SeedRows rows(seeds, std::sqrt(samples.total_area / static_cast<double>(seeds.size())));
-  const std::vector<BlockBox> boxes = block_boxes(samples, run);
+  const std::vector<BlockBox> boxes = block_boxes(samples, context);
   std::vector<Witness> witnesses((samples.blocks.size() + chunk - 1) / chunk);
-  parallel_tasks(run, witnesses.size(), [&](std::size_t c) {
+  parallel_tasks(context, witnesses.size(), [&](std::size_t c) {
     Listener listener(samples, seeds, rows, margin);
     for (std::size_t b = c * chunk; b < std::min(samples.blocks.size(), (c + 1) * chunk); ++b)
       listener.hear_block(samples.blocks[b], boxes[b], witnesses[c], graph.nearest);

@@ -29,6 +29,6 @@ struct SeedGraph {
 /// @param margin  ε, model units
 /// Guarantee: exact up to the rounding of distances in double precision; same for any number of threads.
 /// Based on [Raster2Mesh §4.3].
-SeedGraph seed_graph(const SampleSet& samples, std::span<const Vec3> seeds, double margin, Run& run);
+SeedGraph seed_graph(const SampleSet& samples, std::span<const Vec3> seeds, double margin, ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -2,10 +2,10 @@
 
 namespace evenmesh {
 
-Run& Run::silent() {
+ExecutionContext& ExecutionContext::silent() {
   // One per thread, so that nobody's cancel reaches somebody else.
-  thread_local Run run;
-  return run;
+  thread_local ExecutionContext context;
+  return context;
 }
 
 }  // namespace evenmesh

@@ -17,36 +17,37 @@ namespace evenmesh {
 /// Runs `body()` with at most run.threads() threads, and no more than there are processors; parallel_for calls inside
 /// it obey the limit.
 template <typename Body>
-auto with_threads(const Run& run, Body&& body) {
+auto with_threads(const ExecutionContext& context, Body&& body) {
   const auto processors = static_cast<unsigned>(tbb::info::default_concurrency());
-  tbb::task_arena arena(static_cast<int>(run.threads() == 0 ? processors : std::min(run.threads(), processors)));
+  tbb::task_arena arena(
+      static_cast<int>(context.threads() == 0 ? processors : std::min(context.threads(), processors)));
   return arena.execute(body);
 }
 
 /// Calls body(begin, end) over pieces of [0, count) of at least `grain` items, in parallel; honours cancel between
 /// pieces.
 template <typename Body>
-void parallel_for(const Run& run, std::size_t count, std::size_t grain, const Body& body) {
+void parallel_for(const ExecutionContext& context, std::size_t count, std::size_t grain, const Body& body) {
   if (count == 0) return;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& range) {
-                      run.throw_if_cancelled();
+                      context.throw_if_cancelled();
                       body(range.begin(), range.end());
                     });
 }
 
 /// Calls body(i) for every i in [0, count), each a task of its own: for few, large items.
 template <typename Body>
-void parallel_tasks(const Run& run, std::size_t count, const Body& body) {
-  parallel_for(run, count, 1, [&](std::size_t begin, std::size_t end) {
+void parallel_tasks(const ExecutionContext& context, std::size_t count, const Body& body) {
+  parallel_for(context, count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }
 
 /// Sorts ascending. Items that compare equal must be the same: then so is the result for any number of threads.
 template <typename Item>
-void parallel_sort(const Run& run, std::vector<Item>& items) {
-  run.throw_if_cancelled();
+void parallel_sort(const ExecutionContext& context, std::vector<Item>& items) {
+  context.throw_if_cancelled();
   tbb::parallel_sort(items.begin(), items.end());
 }
 

@@ -10,10 +10,10 @@ namespace evenmesh {
 
 /// Σ term(i) for i in [0, count); pieces of 4,096 terms are summed in parallel, then in order.
 template <typename Term>
-double ordered_sum(const Run& run, std::size_t count, const Term& term) {
+double ordered_sum(const ExecutionContext& context, std::size_t count, const Term& term) {
   constexpr std::size_t piece = 4096;
   std::vector<double> sums((count + piece - 1) / piece);
-  parallel_tasks(run, sums.size(), [&](std::size_t p) {
+  parallel_tasks(context, sums.size(), [&](std::size_t p) {
     double sum = 0;
     for (std::size_t i = p * piece; i < std::min(count, (p + 1) * piece); ++i) sum += term(i);
     sums[p] = sum;

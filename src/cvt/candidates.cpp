@@ -128,9 +128,9 @@ class ChunkSeeds {
 
 }  // namespace
 
-std::vector<BlockBox> block_boxes(const SampleSet& samples, const Run& run) {
+std::vector<BlockBox> block_boxes(const SampleSet& samples, const ExecutionContext& context) {
   std::vector<BlockBox> boxes(samples.blocks.size());
-  parallel_for(run, boxes.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, boxes.size(), 256, [&](std::size_t begin, std::size_t end) {
     const std::vector<float>* coordinate[3] = {&samples.x, &samples.y, &samples.z};
     for (std::size_t b = begin; b < end; ++b)
       for (int a = 0; a < 3; ++a) {
@@ -143,9 +143,9 @@ std::vector<BlockBox> block_boxes(const SampleSet& samples, const Run& run) {
   return boxes;
 }
 
-CandidateLists::CandidateLists(const SampleSet& samples, const Run& run)
+CandidateLists::CandidateLists(const SampleSet& samples, const ExecutionContext& context)
     : samples_(samples),
-      boxes_(block_boxes(samples, run)),
+      boxes_(block_boxes(samples, context)),
       chunks_((samples.blocks.size() + chunk - 1) / chunk),
       reach_(samples.blocks.size()),
       offsets_(samples.blocks.size()),
@@ -160,27 +160,27 @@ float CandidateLists::margin(std::size_t seed, const Vec3& at, double spacing) c
   return static_cast<float>(std::clamp(step, 0.12 * spacing, 0.5 * spacing));
 }
 
-void CandidateLists::update(std::span<const Vec3> seeds, const Run& run) {
+void CandidateLists::update(std::span<const Vec3> seeds, const ExecutionContext& context) {
   const double spacing = std::sqrt(samples_.total_area / static_cast<double>(seeds.size()));
   if (last_seeds_.size() != seeds.size()) seeds_at_build_.clear(), last_seeds_.clear();
   std::vector<std::uint32_t> strayed;
   for (std::size_t i = 0; i < seeds_at_build_.size(); ++i)
     if (!is_valid_for(i, seeds[i])) strayed.push_back(static_cast<std::uint32_t>(i));
   if (seeds_at_build_.empty() || 8 * strayed.size() > seeds.size()) {
-    build_all(seeds, spacing, run);
+    build_all(seeds, spacing, context);
   } else if (!strayed.empty()) {
-    build_around(strayed, seeds, spacing, run);
+    build_around(strayed, seeds, spacing, context);
   }
   last_seeds_.assign(seeds.begin(), seeds.end());
 }
 
-void CandidateLists::build_all(std::span<const Vec3> seeds, double spacing, const Run& run) {
+void CandidateLists::build_all(std::span<const Vec3> seeds, double spacing, const ExecutionContext& context) {
   margins_.resize(seeds.size());
   for (std::size_t i = 0; i < seeds.size(); ++i) margins_[i] = margin(i, seeds[i], spacing);
   largest_margin_ = *std::max_element(margins_.begin(), margins_.end());
   seeds_at_build_.assign(seeds.begin(), seeds.end());
   const SeedGrid grid(seeds_at_build_, spacing);
-  parallel_tasks(run, chunks_.size(), [&](std::size_t c) {
+  parallel_tasks(context, chunks_.size(), [&](std::size_t c) {
     std::array<bool, chunk> all;
     all.fill(true);
     build_chunk(c, all, grid, spacing);
@@ -190,7 +190,7 @@ void CandidateLists::build_all(std::span<const Vec3> seeds, double spacing, cons
 /// Lists in which none of the strayed seeds was or can be now stay as they are: there, the others have kept within
 /// their margins.
 void CandidateLists::build_around(std::span<const std::uint32_t> strayed, std::span<const Vec3> seeds, double spacing,
-                                  const Run& run) {
+                                  const ExecutionContext& context) {
   std::vector<Vec3> places;
   for (const std::uint32_t i : strayed) {
     places.push_back(seeds_at_build_[i]), places.push_back(seeds[i]);
@@ -198,7 +198,7 @@ void CandidateLists::build_around(std::span<const std::uint32_t> strayed, std::s
     seeds_at_build_[i] = seeds[i];
   }
   const SeedGrid grid(seeds_at_build_, spacing), changed(places, spacing);
-  parallel_tasks(run, chunks_.size(), [&](std::size_t c) {
+  parallel_tasks(context, chunks_.size(), [&](std::size_t c) {
     std::array<bool, chunk> stale{};
     bool any = false;
     changed.visit_box(chunks_[c].region, [&](std::uint32_t, const Vec3& p) {

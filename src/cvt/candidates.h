@@ -13,7 +13,7 @@
 
 namespace evenmesh {
 
-std::vector<BlockBox> block_boxes(const SampleSet& samples, const Run& run);
+std::vector<BlockBox> block_boxes(const SampleSet& samples, const ExecutionContext& context);
 
 class SeedGrid;
 
@@ -23,10 +23,10 @@ class SeedGrid;
 /// evaluations of an optimization search again around the few seeds that did, or not at all.
 class CandidateLists {
  public:
-  CandidateLists(const SampleSet& samples, const Run& run);
+  CandidateLists(const SampleSet& samples, const ExecutionContext& context);
 
   /// Makes the lists valid for `seeds`.
-  void update(std::span<const Vec3> seeds, const Run& run);
+  void update(std::span<const Vec3> seeds, const ExecutionContext& context);
 
   /// Seeds of block b in ascending order, never empty; `nearest_two` are guaranteed to be among them.
   std::span<const std::uint32_t> of_block(std::size_t b) const {
@@ -51,9 +51,9 @@ class CandidateLists {
 
   bool is_valid_for(std::size_t seed, const Vec3& at) const;
   float margin(std::size_t seed, const Vec3& at, double spacing) const;
-  void build_all(std::span<const Vec3> seeds, double spacing, const Run& run);
+  void build_all(std::span<const Vec3> seeds, double spacing, const ExecutionContext& context);
   void build_around(std::span<const std::uint32_t> strayed, std::span<const Vec3> seeds, double spacing,
-                    const Run& run);
+                    const ExecutionContext& context);
   void build_chunk(std::size_t c, const std::array<bool, chunk>& stale, const SeedGrid& grid, double spacing);
   std::size_t end_of_chunk(std::size_t c) const { return std::min((c + 1) * chunk, boxes_.size()); }
   Vec3 center(std::size_t b) const {

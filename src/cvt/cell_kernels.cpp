@@ -121,7 +121,7 @@ double EvaluateBlock(const BlockView& b, float* lane_sums, const BlockSums& sums
       length2 = hn::Add(length2, hn::Mul(apart[a], apart[a]));
     }
     // q = R / |s2 − s1|, u = (distance to the bisector) / R
-    const V q = hn::Div(hn::Set(d, b.footprint), hn::Sqrt(hn::Mul(hn::Max(w, hn::Set(d, b.least_area)), length2)));
+    const V q = hn::Div(hn::Set(d, b.footprint), hn::Sqrt(hn::Mul(hn::Max(w, hn::Set(d, b.min_area)), length2)));
     const V reach = hn::Mul(length2, q);
     const V u = hn::Min(hn::Div(hn::Mul(hn::Set(d, 0.5f), hn::Sub(n.distance_second, n.distance_first)), reach),
                         hn::Set(d, 1.0f));

@@ -10,7 +10,7 @@ namespace evenmesh {
 struct BlockView {
   const float *x, *y, *z, *area;
   float footprint;  ///< a sample of area w has a footprint of radius footprint / √max(w, least_area)
-  float least_area;
+  float min_area;
   std::size_t samples;
   const float *seed_x, *seed_y, *seed_z;  ///< readable up to a multiple of eight
   std::size_t seeds;

@@ -16,7 +16,7 @@ namespace {
 /// has the same variance at 0.645; wider ones blur short edges of cells, narrower ones leave noise (docs/cvt.md).
 constexpr double footprint_radius = 0.7;
 /// Rays that graze the surface have long footprints and little weight; the radius does not grow below this |n_a|.
-constexpr double least_slope = 0.25;
+constexpr double min_slope = 0.25;
 
 /// So many candidates are tried as they are; more are sorted out first.
 constexpr std::size_t few_candidates = 8;
@@ -42,33 +42,33 @@ struct FixedSums {
 
 struct CellEvaluator::State {
   const SampleSet& samples;
-  Run& run;
+  ExecutionContext& context;
   CandidateLists lists;
-  float footprint, least_area;
+  float footprint, min_area;
   std::size_t largest_block = 0;
   std::vector<double> block_energy;
   double footprint_energy = 0;
   tbb::enumerable_thread_specific<FixedSums> fixed;
   tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces;
 
-  State(const SampleSet& s, Run& r)
+  State(const SampleSet& s, ExecutionContext& r)
       : samples(s),
-        run(r),
+        context(r),
         lists(s, r),
         footprint(static_cast<float>(footprint_radius * s.grid.spacing * s.grid.spacing)),
-        least_area(static_cast<float>(least_slope * s.grid.spacing * s.grid.spacing)) {
+        min_area(static_cast<float>(min_slope * s.grid.spacing * s.grid.spacing)) {
     for (const SampleBlock& b : s.blocks) largest_block = std::max<std::size_t>(largest_block, b.end - b.begin);
     block_energy.resize(s.blocks.size());
     // The second moment of the footprints about their own centres, 2/5·R² each: constant, but part of F.
-    footprint_energy = ordered_sum(run, s.size(), [&](std::size_t i) {
-      return 0.4 * static_cast<double>(s.area[i]) * footprint * footprint / std::max(s.area[i], least_area);
+    footprint_energy = ordered_sum(context, s.size(), [&](std::size_t i) {
+      return 0.4 * static_cast<double>(s.area[i]) * footprint * footprint / std::max(s.area[i], min_area);
     });
   }
 
   /// Calls work(block index, view, candidates, workspace) for every block, in parallel.
   template <typename Work>
   void for_blocks(std::span<const Vec3> seeds, const Work& work) {
-    parallel_for(run, samples.blocks.size(), 128, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, samples.blocks.size(), 128, [&](std::size_t begin, std::size_t end) {
       auto& workspace = workspaces.local();
       if (!workspace) workspace = std::make_unique<Workspace>(largest_block);
       for (std::size_t b = begin; b < end; ++b) {
@@ -93,7 +93,7 @@ struct CellEvaluator::State {
                              .z = samples.z.data() + at,
                              .area = samples.area.data() + at,
                              .footprint = footprint,
-                             .least_area = least_area,
+                             .min_area = min_area,
                              .samples = block.end - at,
                              .seed_x = sx,
                              .seed_y = sy,
@@ -105,7 +105,8 @@ struct CellEvaluator::State {
   }
 };
 
-CellEvaluator::CellEvaluator(const SampleSet& samples, Run& run) : state_(std::make_unique<State>(samples, run)) {}
+CellEvaluator::CellEvaluator(const SampleSet& samples, ExecutionContext& context)
+    : state_(std::make_unique<State>(samples, context)) {}
 CellEvaluator::~CellEvaluator() = default;
 const SampleSet& CellEvaluator::samples() const {
   return state_->samples;
@@ -113,7 +114,7 @@ const SampleSet& CellEvaluator::samples() const {
 
 void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
   State& state = *state_;
-  state.lists.update(seeds, state.run);
+  state.lists.update(seeds, state.context);
   const double area = state.samples.total_area;
   // Masses add up to `area`, moments to less than area × extent: 2^61 leaves room for rounding.
   const Grid& grid = state.samples.grid;
@@ -141,7 +142,7 @@ void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
       });
   sums.mass.assign(seeds.size(), 0);
   sums.moment.assign(seeds.size(), {});
-  parallel_for(state.run, seeds.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(state.context, seeds.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::array<std::int64_t, 4> total{};
       for (const FixedSums& f : state.fixed)
@@ -157,7 +158,7 @@ void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
 
 void CellEvaluator::nearest(std::span<const Vec3> seeds, std::vector<std::uint32_t>& labels) {
   State& state = *state_;
-  state.lists.update(seeds, state.run);
+  state.lists.update(seeds, state.context);
   labels.resize(state.samples.size());
   state.for_blocks(seeds,
                    [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace&) {
@@ -169,7 +170,7 @@ void CellEvaluator::nearest(std::span<const Vec3> seeds, std::vector<std::uint32
 
 void CellEvaluator::nearest_pairs(std::span<const Vec3> seeds, std::vector<NearestPair>& pairs) {
   State& state = *state_;
-  state.lists.update(seeds, state.run);
+  state.lists.update(seeds, state.context);
   pairs.resize(state.samples.size());
   state.for_blocks(
       seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {

@@ -35,7 +35,7 @@ struct NearestPair {
 class CellEvaluator {
  public:
   /// Keeps a reference to `samples`.
-  CellEvaluator(const SampleSet& samples, Run& run);
+  CellEvaluator(const SampleSet& samples, ExecutionContext& context);
   ~CellEvaluator();
   CellEvaluator(const CellEvaluator&) = delete;
   CellEvaluator& operator=(const CellEvaluator&) = delete;

@@ -14,19 +14,19 @@ using Vectors = std::vector<Vec3>;
 /// Vector arithmetic on all seeds at once.
 class Algebra {
  public:
-  explicit Algebra(Run& run) : run_(run) {}
+  explicit Algebra(ExecutionContext& context) : context_(context) {}
   double dot_all(const Vectors& a, const Vectors& b) const {
-    return ordered_sum(run_, a.size(), [&](std::size_t i) { return dot(a[i], b[i]); });
+    return ordered_sum(context_, a.size(), [&](std::size_t i) { return dot(a[i], b[i]); });
   }
   template <typename Op>
   void each(std::size_t count, const Op& op) const {
-    parallel_for(run_, count, 4096, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context_, count, 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) op(i);
     });
   }
 
  private:
-  Run& run_;
+  ExecutionContext& context_;
 };
 
 /// Limited-memory inverse Hessian, two-loop recursion (Nocedal 1980).
@@ -87,19 +87,20 @@ void limit_steps(Vectors& steps, double limit) {
 
 }  // namespace
 
-OptimizeResult optimize(CellEvaluator& evaluator, std::vector<Vec3>& seeds, const OptimizeOptions& options, Run& run) {
+OptimizeResult optimize(CellEvaluator& evaluator, std::vector<Vec3>& seeds, const OptimizeOptions& options,
+                        ExecutionContext& context) {
   const std::size_t k = seeds.size();
   const double area = evaluator.samples().total_area;
   const double spacing = std::sqrt(area / static_cast<double>(k));
   const double small_mass = 0.1 * area / static_cast<double>(k);
-  const Algebra algebra(run);
+  const Algebra algebra(context);
   History history(algebra);
   OptimizeResult result;
   if (options.evaluations == 0) return result;
 
   CellSums sums, trial_sums;
   const auto evaluate = [&](const Vectors& at, CellSums& out) {
-    run.throw_if_cancelled();
+    context.throw_if_cancelled();
     evaluator.evaluate(at, out);
     result.ratios.push_back(energy_ratio(out.energy, k, area));
   };
@@ -107,7 +108,7 @@ OptimizeResult optimize(CellEvaluator& evaluator, std::vector<Vec3>& seeds, cons
   Vectors gradient(k), step(k), trial(k), trial_gradient(k);
   std::vector<double> inverse_diagonal(k);
   const auto gradient_of = [&](const CellSums& s, Vectors& g) {
-    algebra.each(k, [&](std::size_t i) { g[i] = i < options.held ? Vec3{} : -2.0 * s.moment[i]; });
+    algebra.each(k, [&](std::size_t i) { g[i] = i < options.fixed ? Vec3{} : -2.0 * s.moment[i]; });
   };
   gradient_of(sums, gradient);
 
@@ -122,7 +123,8 @@ OptimizeResult optimize(CellEvaluator& evaluator, std::vector<Vec3>& seeds, cons
       step = history.direction(gradient, inverse_diagonal);
       slope = algebra.dot_all(step, gradient);
     }
-    const double mean_step = ordered_sum(run, k, [&](std::size_t i) { return norm(step[i]); }) / static_cast<double>(k);
+    const double mean_step =
+        ordered_sum(context, k, [&](std::size_t i) { return norm(step[i]); }) / static_cast<double>(k);
     if (mean_step < options.tolerance * spacing) break;
 
     double factor = 1;

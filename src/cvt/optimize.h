@@ -11,7 +11,7 @@ struct OptimizeOptions {
   bool lloyd = false;            ///< Lloyd's iteration instead of L-BFGS
   std::size_t evaluations = 50;  ///< of the energy, at most
   double tolerance = 1e-4;       ///< stop when the mean step is below this share of the seed spacing √(A/k)
-  std::size_t held = 0;          ///< so many seeds, the first ones, stay where they are
+  std::size_t fixed = 0;         ///< so many seeds, the first ones, stay where they are
 };
 
 struct OptimizeResult {
@@ -24,6 +24,7 @@ struct OptimizeResult {
 /// L-BFGS (Liu et al., On centroidal Voronoi tessellation, ToG 2009) with history 5, preconditioned by 1/(2 m_i), so
 /// that its first step is Lloyd's; backtracking line search; Lloyd's step where the direction does not descend. Cost:
 /// `evaluations` × CellEvaluator::evaluate. Same bits for any number of threads.
-OptimizeResult optimize(CellEvaluator& evaluator, std::vector<Vec3>& seeds, const OptimizeOptions& options, Run& run);
+OptimizeResult optimize(CellEvaluator& evaluator, std::vector<Vec3>& seeds, const OptimizeOptions& options,
+                        ExecutionContext& context);
 
 }  // namespace evenmesh

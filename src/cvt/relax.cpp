@@ -20,10 +20,10 @@ constexpr double clear_distance = 0.6;       ///< of others from seeds that are 
 /// The sample set and thinner and thinner versions of it, each with its evaluator.
 class Pyramid {
  public:
-  Pyramid(CellEvaluator& finest, double fewest_samples, Run& run) : levels_{&finest} {
+  Pyramid(CellEvaluator& finest, double fewest_samples, ExecutionContext& context) : levels_{&finest} {
     while (static_cast<double>(levels_.back()->samples().size()) / 4 >= fewest_samples) {
-      sets_.push_back(std::make_unique<SampleSet>(coarsen(levels_.back()->samples(), run)));
-      evaluators_.push_back(std::make_unique<CellEvaluator>(*sets_.back(), run));
+      sets_.push_back(std::make_unique<SampleSet>(coarsen(levels_.back()->samples(), context)));
+      evaluators_.push_back(std::make_unique<CellEvaluator>(*sets_.back(), context));
       levels_.push_back(evaluators_.back().get());
     }
   }
@@ -45,14 +45,14 @@ class Pyramid {
 
 class Balance {
  public:
-  Balance(CellEvaluator& finest, std::size_t count, const BalanceOptions& options, Run& run)
+  Balance(CellEvaluator& finest, std::size_t count, const RelaxOptions& options, ExecutionContext& context)
       : count_(count),
         options_(options),
-        run_(run),
+        context_(context),
         levels_(count_levels()),
-        pyramid_(finest, samples_per_seed * static_cast<double>(count_at(levels_)), run) {}
+        pyramid_(finest, samples_per_seed * static_cast<double>(count_at(levels_)), context) {}
 
-  BalanceResult result() {
+  RelaxResult result() {
     start();
     for (std::size_t level = levels_;; --level) {
       const bool finest = level == 0, coarsest = level == levels_;
@@ -96,22 +96,22 @@ class Balance {
     seeds_ = options_.start == SeedStart::random ? random_start(samples, n, options_.seed)
                                                  : blue_noise_start(samples, n, options_.seed);
     hold(n);
-    adjust_count(pyramid_.for_seeds(n), seeds_, n, options_.seed + 4, run_, held_);
+    adjust_count(pyramid_.for_seeds(n), seeds_, n, options_.seed + 4, context_, fixed_);
   }
 
   /// Puts those seeds first that are to be held among n; not on coarse levels where they would leave no room for
   /// others.
   void hold(std::size_t n) {
-    if (!options_.held) return;
-    std::vector<Vec3> held = options_.held(n);
-    if (2 * held.size() > n && n != count_) held.clear();
+    if (!options_.fixed) return;
+    std::vector<Vec3> fixed = options_.fixed(n);
+    if (2 * fixed.size() > n && n != count_) fixed.clear();
     const double edge = std::sqrt(2 * pyramid_.finest().samples().total_area / (std::numbers::sqrt3 * double(n)));
-    seeds_ = held_and_others(held, seeds_, held_, clear_distance * edge);
-    held_ = held.size();
+    seeds_ = fixed_and_others(fixed, seeds_, fixed_, clear_distance * edge);
+    fixed_ = fixed.size();
   }
 
   double relax(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t evaluations) {
-    const auto result = optimize(evaluator, seeds, {options_.lloyd, evaluations, options_.tolerance, held_}, run_);
+    const auto result = optimize(evaluator, seeds, {options_.lloyd, evaluations, options_.tolerance, fixed_}, context_);
     ratios_.insert(ratios_.end(), result.ratios.begin(), result.ratios.end());
     return result.energy;
   }
@@ -124,7 +124,7 @@ class Balance {
     for (double round = 0; round < rounds; ++round) {
       const double amplitude = 0.25 * spacing * (1 - round / rounds);
       std::vector<Vec3> shaken = seeds_;
-      for (std::size_t s = held_; s < shaken.size(); ++s)
+      for (std::size_t s = fixed_; s < shaken.size(); ++s)
         shaken[s] += amplitude * Vec3{random.gaussian(), random.gaussian(), random.gaussian()};
       const double energy = relax(evaluator, shaken, evaluations(true));
       if (energy < best) best = energy, seeds_.swap(shaken);
@@ -137,39 +137,40 @@ class Balance {
   void split(std::size_t target) {
     CellEvaluator& evaluator =
         pyramid_.for_seeds(target);  // four times as many samples as balancing needs: sees short borders
-    std::vector<Vec3> middles = neighbour_middles(evaluator, seeds_, run_);
+    std::vector<Vec3> middles = neighbour_middles(evaluator, seeds_, context_);
     const auto now = static_cast<std::int64_t>(seeds_.size()), after = now + static_cast<std::int64_t>(middles.size());
     const std::int64_t change = (static_cast<std::int64_t>(target) - after) / 4;
     if (std::abs(change) * 100 > now) {
       adjust_count(evaluator, seeds_, static_cast<std::size_t>(std::max<std::int64_t>(4, now + change)),
-                   options_.seed + 2, run_, held_);
+                   options_.seed + 2, context_, fixed_);
       relax(pyramid_.for_seeds(seeds_.size()), seeds_, evaluations(false) / 3);
-      middles = neighbour_middles(evaluator, seeds_, run_);
+      middles = neighbour_middles(evaluator, seeds_, context_);
     }
     seeds_.insert(seeds_.end(), middles.begin(), middles.end());
     hold(target);
-    adjust_count(evaluator, seeds_, target, options_.seed + 3, run_, held_);
+    adjust_count(evaluator, seeds_, target, options_.seed + 3, context_, fixed_);
   }
 
   std::size_t count_;
-  BalanceOptions options_;
-  Run& run_;
+  RelaxOptions options_;
+  ExecutionContext& context_;
   std::size_t levels_;
   Pyramid pyramid_;
   std::vector<Vec3> seeds_;
-  std::size_t held_ = 0;  ///< of them, the first ones
+  std::size_t fixed_ = 0;  ///< of them, the first ones
   std::vector<double> ratios_;
 };
 
 }  // namespace
 
-BalanceResult balance_seeds(CellEvaluator& evaluator, std::size_t count, const BalanceOptions& options, Run& run) {
+RelaxResult relax_seeds(CellEvaluator& evaluator, std::size_t count, const RelaxOptions& options,
+                        ExecutionContext& context) {
   if (count < 4) throw InvalidInput("a closed mesh needs at least 4 vertices: ask for more");
   const SampleSet& samples = evaluator.samples();
   if (samples.size() < count)
     throw InvalidInput(
         fmt::format("{} vertices need more than {} samples: raise the resolution", count, samples.size()));
-  return Balance(evaluator, count, options, run).result();
+  return Balance(evaluator, count, options, context).result();
 }
 
 }  // namespace evenmesh

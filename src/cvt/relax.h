@@ -10,7 +10,7 @@ namespace evenmesh {
 
 enum class SeedStart { random, blue_noise, coarse_to_fine };
 
-struct BalanceOptions {
+struct RelaxOptions {
   SeedStart start = SeedStart::coarse_to_fine;
   bool lloyd = false;
   double effort = 1;                       ///< scales the number of evaluations on every level, > 0
@@ -19,10 +19,10 @@ struct BalanceOptions {
   double tolerance = 1e-4;                 ///< see OptimizeOptions
   std::uint64_t seed = 1;
   /// Seeds that stay where they are, when there are so many altogether; none: all move.
-  std::function<std::vector<Vec3>(std::size_t count)> held{};
+  std::function<std::vector<Vec3>(std::size_t count)> fixed{};
 };
 
-struct BalanceResult {
+struct RelaxResult {
   std::vector<Vec3> seeds;     ///< those that are held come first
   std::vector<double> ratios;  ///< energy ratio of every evaluation, all levels in turn
   double energy_ratio = 0;     ///< of the seeds returned, on the samples given
@@ -37,6 +37,7 @@ struct BalanceResult {
 /// @param evaluator  of the sampled surface
 /// Guarantee: exactly `count` seeds; same bits for any number of threads. Cost: 10 to 30 evaluations of all samples.
 /// @throws InvalidInput  if count < 4 or there are fewer samples than seeds
-BalanceResult balance_seeds(CellEvaluator& evaluator, std::size_t count, const BalanceOptions& options, Run& run);
+RelaxResult relax_seeds(CellEvaluator& evaluator, std::size_t count, const RelaxOptions& options,
+                        ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -29,12 +29,12 @@ struct Border {
 };
 
 /// One Border for every two cells that share a sample's footprint.
-std::vector<Border> borders(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run) {
+std::vector<Border> borders(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, ExecutionContext& context) {
   const SampleSet& samples = evaluator.samples();
   std::vector<NearestPair> nearest;
   evaluator.nearest_pairs(seeds, nearest);
   std::vector<std::vector<Border>> of_chunk((samples.blocks.size() + 63) / 64);
-  parallel_tasks(run, of_chunk.size(), [&](std::size_t chunk) {
+  parallel_tasks(context, of_chunk.size(), [&](std::size_t chunk) {
     auto& list = of_chunk[chunk];
     for (std::size_t b = 64 * chunk; b < std::min(samples.blocks.size(), 64 * (chunk + 1)); ++b)
       for (std::uint32_t i = samples.blocks[b].begin; i < samples.blocks[b].end; ++i) {
@@ -135,10 +135,11 @@ std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, 
   return seeds;
 }
 
-std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run) {
+std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<Vec3>& seeds,
+                                    ExecutionContext& context) {
   const SampleSet& samples = evaluator.samples();
   std::vector<Vec3> middles;
-  for (const Border& border : borders(evaluator, seeds, run)) {
+  for (const Border& border : borders(evaluator, seeds, context)) {
     const Vec3 middle = 0.5 * (seeds[border.pair >> 32] + seeds[border.pair & 0xffffffffu]);
     const Vec3 n = unpack_normal(samples.normal[border.sample]);
     middles.push_back(middle + n * dot(n, sample_position(samples, border.block, border.sample) - middle));
@@ -146,9 +147,9 @@ std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<
   return middles;
 }
 
-void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run,
-                  std::size_t held) {
-  run.throw_if_cancelled();
+void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed,
+                  ExecutionContext& context, std::size_t fixed) {
+  context.throw_if_cancelled();
   if (seeds.size() == count) return;
   const SampleSet& samples = evaluator.samples();
   std::vector<std::uint32_t> labels;
@@ -156,7 +157,7 @@ void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_
   std::vector<double> mass(seeds.size(), 0);
   for (std::size_t i = 0; i < labels.size(); ++i) mass[labels[i]] += samples.area[i];
   const bool remove = seeds.size() > count;
-  const std::size_t first = remove ? std::min(held, count) : 0;
+  const std::size_t first = remove ? std::min(fixed, count) : 0;
   std::vector<std::uint32_t> order(seeds.size() - first);
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(first + i);
   std::sort(order.begin(), order.end(), [&](auto a, auto b) {
@@ -202,8 +203,8 @@ void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_
   seeds.insert(seeds.end(), rest.begin(), rest.end());
 }
 
-std::vector<Vec3> held_and_others(std::span<const Vec3> held, const std::vector<Vec3>& seeds, std::size_t first,
-                                  double reach) {
+std::vector<Vec3> fixed_and_others(std::span<const Vec3> fixed, const std::vector<Vec3>& seeds, std::size_t first,
+                                   double reach) {
   const auto key = [&](const Vec3& p, int i, int j, int k) {
     const auto at = [&](double x, int d) {
       return static_cast<std::uint64_t>(std::int64_t(std::floor(x / reach)) + d);
@@ -211,15 +212,15 @@ std::vector<Vec3> held_and_others(std::span<const Vec3> held, const std::vector<
     return (at(p.x, i) * 0x9e3779b97f4a7c15ull + at(p.y, j)) * 0xbf58476d1ce4e5b9ull + at(p.z, k);
   };
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells;
-  for (std::uint32_t h = 0; h < held.size(); ++h) cells[key(held[h], 0, 0, 0)].push_back(h);
+  for (std::uint32_t h = 0; h < fixed.size(); ++h) cells[key(fixed[h], 0, 0, 0)].push_back(h);
   const auto is_near = [&](const Vec3& p) {
     for (int d = 0; d < 27; ++d)
       if (const auto it = cells.find(key(p, d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1)); it != cells.end())
         for (const std::uint32_t h : it->second)
-          if (squared_norm(held[h] - p) < reach * reach) return true;
+          if (squared_norm(fixed[h] - p) < reach * reach) return true;
     return false;
   };
-  std::vector<Vec3> all(held.begin(), held.end());
+  std::vector<Vec3> all(fixed.begin(), fixed.end());
   for (std::size_t s = first; s < seeds.size(); ++s)
     if (!is_near(seeds[s])) all.push_back(seeds[s]);
   return all;

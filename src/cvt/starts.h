@@ -21,15 +21,16 @@ std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, 
 /// times as many, and wherever the seeds lie in a hexagonal pattern the new ones continue it: irregular vertices do not
 /// multiply.
 /// @param evaluator  samples, about 100 per seed or more, so that short borders between cells are seen
-std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<Vec3>& seeds, Run& run);
+std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<Vec3>& seeds,
+                                    ExecutionContext& context);
 
 /// Adds seeds at random samples of the heaviest cells, or removes the seeds of the lightest, until there are exactly
 /// `count`. The first `held` stay. Seeds that stay keep their order; balance them afterwards.
-void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed, Run& run,
-                  std::size_t held = 0);
+void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed,
+                  ExecutionContext& context, std::size_t fixed = 0);
 
 /// `held`, followed by those seeds, from index `first` on, that are not nearer than `reach` to one of them.
-std::vector<Vec3> held_and_others(std::span<const Vec3> held, const std::vector<Vec3>& seeds, std::size_t first,
-                                  double reach);
+std::vector<Vec3> fixed_and_others(std::span<const Vec3> fixed, const std::vector<Vec3>& seeds, std::size_t first,
+                                   double reach);
 
 }  // namespace evenmesh

@@ -11,16 +11,16 @@
 namespace evenmesh {
 namespace {
 
-constexpr double around = 1;             ///< edges: so far the planes go through the tip, and nothing else comes near
-constexpr double most_residual = 0.005;  ///< of a plane's distance from the tip, root of the mean square, in edges
-constexpr double most_missing = 4;       ///< grid cells from the tip to the nearest sample: needles are seen cut off
-constexpr double apart = 0.5;            ///< edges: nearer to creases, and to each other, none are looked for
-constexpr std::size_t most_candidates = 2000;
+constexpr double around = 1;            ///< edges: so far the planes go through the tip, and nothing else comes near
+constexpr double max_residual = 0.005;  ///< of a plane's distance from the tip, root of the mean square, in edges
+constexpr double max_missing = 4;       ///< grid cells from the tip to the nearest sample: needles are seen cut off
+constexpr double apart = 0.5;           ///< edges: nearer to creases, and to each other, none are looked for
+constexpr std::size_t max_candidates = 2000;
 
 class TipFinder {
  public:
   TipFinder(const SampleSet& samples, double angle, double edge)
-      : samples_(samples), most_mean_(std::cos(angle * std::numbers::pi / 180)), edge_(edge) {}
+      : samples_(samples), max_mean_(std::cos(angle * std::numbers::pi / 180)), edge_(edge) {}
 
   /// The tip that is near to p, if there is one.
   std::optional<Vec3> near(Vec3 p) const {
@@ -32,11 +32,11 @@ class TipFinder {
       if (!(norm(move) < around * edge_)) return {};
       p += move;
     }
-    return is_tip(p) ? std::optional(p) : std::nullopt;
+    return is_apex(p) ? std::optional(p) : std::nullopt;
   }
 
  private:
-  bool is_tip(const Vec3& p) const {
+  bool is_apex(const Vec3& p) const {
     double count = 0, squares = 0, nearest = around * edge_;
     Vec3 sum;
     each_around(p, [&](const Vec3& x, const Vec3& n) {
@@ -44,8 +44,8 @@ class TipFinder {
       count += 1, squares += off * off, sum += n;
       nearest = std::min(nearest, norm(x - p));
     });
-    return count > 0 && nearest < most_missing * samples_.grid.spacing && norm(sum) < most_mean_ * count &&
-           squares < most_residual * most_residual * edge_ * edge_ * count;
+    return count > 0 && nearest < max_missing * samples_.grid.spacing && norm(sum) < max_mean_ * count &&
+           squares < max_residual * max_residual * edge_ * edge_ * count;
   }
 
   /// Calls visit(place, normal) for the samples nearer to p than `around`.
@@ -78,7 +78,7 @@ class TipFinder {
   }
 
   const SampleSet& samples_;
-  double most_mean_;  ///< length of the mean normal
+  double max_mean_;  ///< length of the mean normal
   double edge_;
 };
 
@@ -114,29 +114,30 @@ class Surroundings {
 
 }  // namespace
 
-std::vector<Vec3> find_tips(const SampleSet& samples, std::span<const CreaseNode> nodes, const Creases& creases,
-                            double angle, double edge, Run& run) {
+std::vector<Vec3> find_apexes(const SampleSet& samples, std::span<const FeatureNode> nodes,
+                              const FeatureCurves& features, double angle, double edge, ExecutionContext& context) {
   const Vec3 origin = samples.grid.origin;
   Surroundings taken(apart * edge);
-  for (const CreaseChain& chain : creases.chains)
-    for (const Vec3& p : chain.points) taken.add(p - origin);
+  for (const FeatureCurve& curve : features.curves)
+    for (const Vec3& p : curve.points) taken.add(p - origin);
   std::vector<Vec3> candidates;
-  for (const CreaseNode& node : nodes) {
+  for (const FeatureNode& node : nodes) {
     if (taken.near(node.place - origin)) continue;
     taken.add(node.place - origin);
     candidates.push_back(node.place);
-    if (candidates.size() > most_candidates) return {};
+    if (candidates.size() > max_candidates) return {};
   }
   const TipFinder finder(samples, angle, edge);
   std::vector<std::optional<Vec3>> found(candidates.size());
-  parallel_for(run, candidates.size(), 4, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, candidates.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) found[c] = finder.near(candidates[c]);
   });
-  std::vector<Vec3> tips;
-  for (const auto& tip : found)
-    if (tip && std::none_of(tips.begin(), tips.end(), [&](const Vec3& q) { return norm(q - *tip) < around * edge; }))
-      tips.push_back(*tip);
-  return tips;
+  std::vector<Vec3> apexes;
+  for (const auto& apex : found)
+    if (apex &&
+        std::none_of(apexes.begin(), apexes.end(), [&](const Vec3& q) { return norm(q - *apex) < around * edge; }))
+      apexes.push_back(*apex);
+  return apexes;
 }
 
 }  // namespace evenmesh

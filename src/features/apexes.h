@@ -17,7 +17,7 @@ namespace evenmesh {
 /// @param edge  mean edge length of the mesh to come, model units
 /// Guarantee: same points for any number of threads. Cost: some 50 µs for each of 2,000 places at most; where there are
 /// more of them the surface is rough, and has no tips.
-std::vector<Vec3> find_tips(const SampleSet& samples, std::span<const CreaseNode> nodes, const Creases& creases,
-                            double angle, double edge, Run& run);
+std::vector<Vec3> find_apexes(const SampleSet& samples, std::span<const FeatureNode> nodes,
+                              const FeatureCurves& features, double angle, double edge, ExecutionContext& context);
 
 }  // namespace evenmesh

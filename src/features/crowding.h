@@ -1,5 +1,5 @@
 #pragma once
-/// Creases that lie too near to each other.
+/// FeatureCurves that lie too near to each other.
 
 #include "features/feature_curves.h"
 
@@ -7,9 +7,9 @@ namespace evenmesh {
 
 /// Leaves out chains of which a third runs beside other chains, or beside another part of themselves, nearer than
 /// `reach` (model units), as around a thin plate; and the corners that are left without a chain.
-Creases without_crowded(const Creases& creases, double reach);
+FeatureCurves without_crowded(const FeatureCurves& features, double reach);
 
 /// The creases but for the marked chains, and without corners where none ends any more. @param doomed  by chain
-Creases without_chains(const Creases& creases, const std::vector<char>& doomed);
+FeatureCurves without_curves(const FeatureCurves& features, const std::vector<char>& doomed);
 
 }  // namespace evenmesh

@@ -70,7 +70,7 @@ struct HalfLink {
 };
 
 struct BrickNodes {
-  std::vector<CreaseNode> nodes;
+  std::vector<FeatureNode> nodes;
   std::vector<HalfLink> links;  ///< nodes numbered within the brick
   std::uint32_t loops = 0;      ///< creased or not
 
@@ -113,8 +113,8 @@ class Finder {
     return std::abs(u) < safe_step_ && std::abs(v) < safe_step_;
   }
 
-  CreaseNode make_node(const CubeBrick& brick, const std::uint32_t* loop, const Vec3* normal, int n) const {
-    CreaseNode node;
+  FeatureNode make_node(const CubeBrick& brick, const std::uint32_t* loop, const Vec3* normal, int n) const {
+    FeatureNode node;
     double weight = 0, area = 0;
     Box box;
     for (int i = 0; i < n; ++i) {
@@ -125,7 +125,8 @@ class Finder {
       area += sample_area(normal[i], static_cast<int>(samples_.edge[loop[i]].axis()), samples_.grid.spacing);
     }
     // Weights are squared densities (weigh_by_density).
-    if (const double ratio = weight / area; std::abs(ratio - 1) > 1e-3) node.pace = std::sqrt(std::sqrt(ratio));
+    if (const double ratio = weight / area; std::abs(ratio - 1) > 1e-3)
+      node.relative_sizing = std::sqrt(std::sqrt(ratio));
     node.place = node.planes.minimum(2, 2);
     const double margin = 0.75 * samples_.grid.spacing;
     for (int a = 0; a < 3; ++a) node.place[a] = std::clamp(node.place[a], box.lo[a] - margin, box.hi[a] + margin);
@@ -150,13 +151,13 @@ class Finder {
 
 }  // namespace
 
-CreaseGraph find_crease_graph(const SampleSet& samples, double sharp, double weak, Run& run) {
-  const auto bricks = cube_bricks(samples, run);
+FeatureGraph find_feature_graph(const SampleSet& samples, double sharp, double weak, ExecutionContext& context) {
+  const auto bricks = cube_bricks(samples, context);
   std::vector<BrickNodes> of_brick(bricks.size());
   const Finder finder(samples, sharp, weak);
-  for_loops(samples, bricks, run,
+  for_loops(samples, bricks, context,
             [&](std::size_t b, const std::uint32_t* loop, int n) { finder.visit(bricks[b], loop, n, of_brick[b]); });
-  CreaseGraph graph;
+  FeatureGraph graph;
   std::vector<HalfLink> halves;
   for (BrickNodes& found : of_brick) {
     if (found.rough()) {
@@ -167,7 +168,7 @@ CreaseGraph find_crease_graph(const SampleSet& samples, double sharp, double wea
     graph.nodes.insert(graph.nodes.end(), found.nodes.begin(), found.nodes.end());
     for (const HalfLink& link : found.links) halves.push_back({link.key, first + link.node, link.sharp});
   }
-  parallel_sort(run, halves);
+  parallel_sort(context, halves);
   for (std::size_t i = 0; i + 1 < halves.size(); ++i)
     if (halves[i].key == halves[i + 1].key) {
       graph.links.push_back({halves[i].node, halves[i + 1].node});

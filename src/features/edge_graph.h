@@ -28,16 +28,16 @@ class PlaneQuadric {
   std::array<double, 6> a_{};  ///< upper triangle
 };
 
-struct CreaseNode {
-  Vec3 place;           ///< of the crease in one cube, model units
-  PlaneQuadric planes;  ///< of the cube's crossings, about the grid's origin
-  double pace = 1;      ///< 1 / wanted vertex spacing, compared with the mean: 1 where the density is uniform
+struct FeatureNode {
+  Vec3 place;                  ///< of the crease in one cube, model units
+  PlaneQuadric planes;         ///< of the cube's crossings, about the grid's origin
+  double relative_sizing = 1;  ///< 1 / wanted vertex spacing, compared with the mean: 1 where the density is uniform
 };
 
 /// One node for every loop of crossings in a cube that a crease passes through, one link for every face between two.
 /// Where most of a brick is creased, as on fractals or at the tip of a needle, there is one node and no link.
-struct CreaseGraph {
-  std::vector<CreaseNode> nodes;
+struct FeatureGraph {
+  std::vector<FeatureNode> nodes;
   std::vector<std::array<std::uint32_t, 2>> links;
   std::vector<char> sharp;  ///< by link: beyond the angle asked for
 };
@@ -45,6 +45,6 @@ struct CreaseGraph {
 /// @param sharp  cosine of the angle between normals from which on there is a crease
 /// @param weak   cosine of a smaller angle: what is between the two may continue a crease
 /// Guarantee: same graph for any number of threads. Cost: about 50 ns per sample and core.
-CreaseGraph find_crease_graph(const SampleSet& samples, double sharp, double weak, Run& run);
+FeatureGraph find_feature_graph(const SampleSet& samples, double sharp, double weak, ExecutionContext& context);
 
 }  // namespace evenmesh

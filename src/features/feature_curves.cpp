@@ -15,14 +15,14 @@ namespace evenmesh {
 namespace {
 
 using Index = std::uint32_t;
-constexpr Index none = CreaseChain::none;
-constexpr double least_length = 3;  ///< of connected chains together, in edges, and five times that for every loose end
+constexpr Index none = FeatureCurve::none;
+constexpr double min_length = 3;  ///< of connected chains together, in edges, and five times that for every loose end
 constexpr double loop_length = 1.5;        ///< of a loop from a corner to itself, in edges
 constexpr double spur_length = 0.7;        ///< of a branch that ends nowhere, in edges
 constexpr double corner_distance = 0.2;    ///< corners nearer than this, in edges, are one
 constexpr double crowded_distance = 0.33;  ///< of chains side by side, in edges
 constexpr double weak_angle = 0.65;        ///< of the angle asked for: down to this creases go on that fade
-constexpr double most_tightened = 1.5;     ///< how much denser vertices are there than elsewhere, at most
+constexpr double max_tightened = 1.5;      ///< how much denser vertices are there than elsewhere, at most
 constexpr double sharp_turn = 40;          ///< degrees within a few grid cells: a corner
 
 /// A path of nodes between two junctions, or a closed one.
@@ -35,7 +35,7 @@ struct Path {
 
 struct Point {
   Vec3 place;
-  double pace;
+  double relative_sizing;
 };
 
 /// Points without those that are nearer than `step` to the one before, or to the last one; first and last stay.
@@ -60,7 +60,7 @@ double length_of(const std::vector<Point>& points) {
 /// The graph's paths between junctions, cleaned: no noise, no junctions next to each other.
 class Network {
  public:
-  Network(const CreaseGraph& graph, double edge, double spacing)
+  Network(const FeatureGraph& graph, double edge, double spacing)
       : graph_(graph), edge_(edge), spacing_(spacing), parent_(graph.nodes.size()), planes_(graph.nodes.size()) {
     for (Index v = 0; v < parent_.size(); ++v) parent_[v] = v, planes_[v] = graph.nodes[v].planes;
     list_links();
@@ -93,10 +93,10 @@ class Network {
 
   std::vector<Point> points_between(const Path& path) const {
     std::vector<Point> points;
-    for (const Index v : path.nodes) points.push_back({graph_.nodes[v].place, graph_.nodes[v].pace});
+    for (const Index v : path.nodes) points.push_back({graph_.nodes[v].place, graph_.nodes[v].relative_sizing});
     return points;
   }
-  double pace(Index node) const { return graph_.nodes[node].pace; }
+  double relative_sizing(Index node) const { return graph_.nodes[node].relative_sizing; }
 
  private:
   struct Link {
@@ -280,12 +280,12 @@ class Network {
     for (Path& path : paths_) {
       const Index root = path.from == none ? none : find_root(part, junction(path.from));
       const double most = root == none ? path.length : length[root], ends = root == none ? 0 : loose_ends[root];
-      if (most < least_length * (1 + 5 * ends) * edge_) path.alive = false;
+      if (most < min_length * (1 + 5 * ends) * edge_) path.alive = false;
     }
     degrees_.clear();
   }
 
-  const CreaseGraph& graph_;
+  const FeatureGraph& graph_;
   double edge_, spacing_;
   Vec3 origin_;
   std::vector<std::vector<Link>> links_;
@@ -369,7 +369,7 @@ class Chains {
  public:
   Chains(double edge, double spacing) : edge_(edge), spacing_(spacing) {}
 
-  Creases make(Network& network) {
+  FeatureCurves make(Network& network) {
     for (const Path& path : network.paths()) {
       if (!path.alive) continue;
       std::vector<Point> points = network.points_between(path);
@@ -379,18 +379,18 @@ class Chains {
         continue;
       }
       const Index from = corner_at(network, path.from), to = corner_at(network, path.to);
-      points.insert(points.begin(), {creases_.corners[from], network.pace(path.from)});
-      points.push_back({creases_.corners[to], network.pace(path.to)});
+      points.insert(points.begin(), {features_.corners[from], network.relative_sizing(path.from)});
+      points.push_back({features_.corners[to], network.relative_sizing(path.to)});
       add(clear_of_ends(points), from, to);
     }
-    return std::move(creases_);
+    return std::move(features_);
   }
 
  private:
   Index corner_at(Network& network, Index node) {
     const Index root = network.junction(node);
-    const auto [it, added] = corner_of_.insert({root, static_cast<Index>(creases_.corners.size())});
-    if (added) creases_.corners.push_back(network.place(root));
+    const auto [it, added] = corner_of_.insert({root, static_cast<Index>(features_.corners.size())});
+    if (added) features_.corners.push_back(network.place(root));
     return it->second;
   }
 
@@ -411,12 +411,12 @@ class Chains {
     const double reach = std::max(3 * spacing_, 0.25 * edge_);
     const Polyline line(points, closed);
     const std::vector<std::size_t> turns = line.turns(reach);
-    if (turns.empty()) return add_chain(points, from, to);
+    if (turns.empty()) return add_curve(points, from, to);
     std::vector<Index> corners;
     for (const std::size_t i : turns) {
-      corners.push_back(static_cast<Index>(creases_.corners.size()));
-      creases_.corners.push_back(line.corner(i, reach, 3.5 * spacing_));
-      points[i].place = creases_.corners.back();
+      corners.push_back(static_cast<Index>(features_.corners.size()));
+      features_.corners.push_back(line.corner(i, reach, 3.5 * spacing_));
+      points[i].place = features_.corners.back();
     }
     const auto piece = [&](std::size_t begin, std::size_t end) {
       return std::vector<Point>(points.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -426,65 +426,66 @@ class Chains {
     std::vector<Point> head = piece(0, turns.front()), tail = piece(turns.back(), last);
     if (closed) {
       tail.insert(tail.end(), head.begin() + 1, head.end());
-      add_chain(clear_of_ends(tail), corners.back(), corners.front());
+      add_curve(clear_of_ends(tail), corners.back(), corners.front());
     } else {
-      add_chain(clear_of_ends(head), from, corners.front());
-      add_chain(clear_of_ends(tail), corners.back(), to);
+      add_curve(clear_of_ends(head), from, corners.front());
+      add_curve(clear_of_ends(tail), corners.back(), to);
     }
     for (std::size_t k = 0; k + 1 < turns.size(); ++k)
-      add_chain(clear_of_ends(piece(turns[k], turns[k + 1])), corners[k], corners[k + 1]);
+      add_curve(clear_of_ends(piece(turns[k], turns[k + 1])), corners[k], corners[k + 1]);
   }
 
-  void add_chain(std::vector<Point> points, Index from, Index to) {
-    CreaseChain chain = chain_of(points, from, to);
-    if (!(chain.points.size() > 1 && chain.length() > 0)) return;
-    if (!follows(chain, edge_)) {
+  void add_curve(std::vector<Point> points, Index from, Index to) {
+    FeatureCurve curve = curve_of(points, from, to);
+    if (!(curve.points.size() > 1 && curve.length() > 0)) return;
+    if (!follows(curve, edge_)) {
       tighten(points, from == none);
-      chain = chain_of(points, from, to);
+      curve = curve_of(points, from, to);
     }
-    creases_.chains.push_back(std::move(chain));
+    features_.curves.push_back(std::move(curve));
   }
-  static CreaseChain chain_of(const std::vector<Point>& points, Index from, Index to) {
-    CreaseChain chain;
-    chain.from = from, chain.to = to;
+  static FeatureCurve curve_of(const std::vector<Point>& points, Index from, Index to) {
+    FeatureCurve curve;
+    curve.from = from, curve.to = to;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const double step =
-          i == 0 ? 0 : 0.5 * (points[i - 1].pace + points[i].pace) * norm(points[i].place - points[i - 1].place);
-      chain.points.push_back(points[i].place);
-      chain.arc.push_back((i == 0 ? 0 : chain.arc.back()) + step);
+      const double step = i == 0 ? 0
+                                 : 0.5 * (points[i - 1].relative_sizing + points[i].relative_sizing) *
+                                       norm(points[i].place - points[i - 1].place);
+      curve.points.push_back(points[i].place);
+      curve.arc.push_back((i == 0 ? 0 : curve.arc.back()) + step);
     }
-    return chain;
+    return curve;
   }
 
-  /// Quickens the pace in strongly curved parts so that chords do not leave them by more than `crease_deviation`.
+  /// Quickens the pace in strongly curved parts so that chords do not leave them by more than `feature_deviation`.
   void tighten(std::vector<Point>& points, bool closed) const {
     const Polyline line(points, closed);
     const double reach = std::max(2.5 * spacing_, 0.3 * edge_);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double curvature = line.turn(i, reach) / reach;
-      const double chord = std::sqrt(8 * crease_deviation * edge_ / std::max(curvature, 1e-9 / edge_));
-      points[i].pace *= std::clamp(edge_ / chord, 1.0, most_tightened);
+      const double chord = std::sqrt(8 * feature_deviation * edge_ / std::max(curvature, 1e-9 / edge_));
+      points[i].relative_sizing *= std::clamp(edge_ / chord, 1.0, max_tightened);
     }
   }
 
   double edge_, spacing_;
-  Creases creases_;
+  FeatureCurves features_;
   std::map<Index, Index> corner_of_;
 };
 
 }  // namespace
 
-Creases find_creases(const SampleSet& samples, double angle, double edge, Run& run) {
-  const CreaseGraph graph = find_crease_graph(samples, std::cos(angle * std::numbers::pi / 180),
-                                              std::cos(weak_angle * angle * std::numbers::pi / 180), run);
+FeatureCurves find_feature_curves(const SampleSet& samples, double angle, double edge, ExecutionContext& context) {
+  const FeatureGraph graph = find_feature_graph(samples, std::cos(angle * std::numbers::pi / 180),
+                                                std::cos(weak_angle * angle * std::numbers::pi / 180), context);
   if (graph.nodes.empty()) return {};
   Network network(graph, edge, samples.grid.spacing);
   network.set_origin(samples.grid.origin);
   network.clean();
-  const Creases all = Chains(edge, samples.grid.spacing).make(network);
-  Creases creases = without_crowded(all, crowded_distance * edge);
-  creases.tips = find_tips(samples, graph.nodes, creases, angle, edge, run);
-  return creases;
+  const FeatureCurves all = Chains(edge, samples.grid.spacing).make(network);
+  FeatureCurves features = without_crowded(all, crowded_distance * edge);
+  features.apexes = find_apexes(samples, graph.nodes, features, angle, edge, context);
+  return features;
 }
 
 }  // namespace evenmesh

@@ -10,10 +10,10 @@
 namespace evenmesh {
 
 /// How far a sharp edge may lie from the chords that follow it, in edge lengths.
-inline constexpr double crease_deviation = 0.08;
+inline constexpr double feature_deviation = 0.08;
 
 /// A sharp edge from one corner to another, or to itself.
-struct CreaseChain {
+struct FeatureCurve {
   static constexpr std::uint32_t none = 0xffffffffu;
   std::uint32_t from = none, to = none;  ///< corners; none: a closed chain, whose last point is its first
   std::vector<Vec3> points;              ///< two or more, about a grid cell apart; the corners are among them
@@ -23,10 +23,10 @@ struct CreaseChain {
   double length() const { return arc.back(); }
 };
 
-struct Creases {
+struct FeatureCurves {
   std::vector<Vec3> corners;
-  std::vector<CreaseChain> chains;
-  std::vector<Vec3> tips;  ///< of cones and the like: points where the normal turns and no chain ends
+  std::vector<FeatureCurve> curves;
+  std::vector<Vec3> apexes;  ///< of cones and the like: points where the normal turns and no chain ends
 };
 
 /// Finds the edges across which the normal turns by more than `angle` degrees.
@@ -36,11 +36,11 @@ struct Creases {
 /// are paths of cubes, found without any search in space. A cube's point of the crease is where the tangent planes of
 /// its crossings meet (Ju et al., Dual contouring of Hermite data, 2002); three kinds of planes make a corner.
 ///
-/// Creases that fade are followed down to two thirds of the angle. Connected chains of a few edges' length, or more
-/// with loose ends, are noise and left out; corners nearer than a fifth of it become one. Chains that run side by side
-/// nearer than a third of it, as around thin plates, are left out too: no mesh of such edges follows both.
+/// FeatureCurves that fade are followed down to two thirds of the angle. Connected chains of a few edges' length, or
+/// more with loose ends, are noise and left out; corners nearer than a fifth of it become one. Chains that run side by
+/// side nearer than a third of it, as around thin plates, are left out too: no mesh of such edges follows both.
 /// @param edge  mean edge length of the mesh to come, model units; the grid is a few times finer
 /// Guarantee: same result for any number of threads. Cost: about 50 ns per sample and core.
-Creases find_creases(const SampleSet& samples, double angle, double edge, Run& run);
+FeatureCurves find_feature_curves(const SampleSet& samples, double angle, double edge, ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -10,28 +10,28 @@
 namespace evenmesh {
 
 /// Seeds on every corner and evenly spaced along every chain. As labels they are the first ones.
-struct CreaseSeeds {
+struct FeatureSeeds {
   std::vector<Vec3> places;                    ///< the corners first, then chain after chain
   std::size_t corners = 0;                     ///< of the places
   std::vector<std::uint32_t> first, segments;  ///< by chain: its first seed between the ends; pieces it is cut into
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< neighbours along a chain
 
   /// The chain of a place that is no corner.
-  std::uint32_t chain_of(std::size_t place) const;
+  std::uint32_t curve_of(std::size_t place) const;
 };
 
-/// Whether the seeds that place_crease_seeds() would put on a chain follow it: chords within `crease_deviation`.
-bool follows(const CreaseChain& chain, double edge);
+/// Whether the seeds that place_feature_seeds() would put on a chain follow it: chords within `feature_deviation`.
+bool follows(const FeatureCurve& curve, double edge);
 
 /// @param edge  wanted distance between neighbours, model units; chains are cut into equal pieces of about that
-CreaseSeeds place_crease_seeds(const Creases& creases, double edge);
+FeatureSeeds place_feature_seeds(const FeatureCurves& features, double edge);
 
 /// Gives the samples within one and a half grid cells of a chain to the chain's seed that is nearest along it. With
 /// that no other cell reaches across a crease, and neighbours along a chain are neighbours in the dual.
 ///
 /// @param seeds  those of `creases`; their labels are 0, 1, …
 /// Cost: about a microsecond for every sample near a chain, 5 ns for the others. Same labels for any number of threads.
-void hold_labels(const SampleSet& samples, const Creases& creases, const CreaseSeeds& seeds,
-                 std::vector<std::uint32_t>& labels, Run& run);
+void constrain_labels(const SampleSet& samples, const FeatureCurves& features, const FeatureSeeds& seeds,
+                      std::vector<std::uint32_t>& labels, ExecutionContext& context);
 
 }  // namespace evenmesh

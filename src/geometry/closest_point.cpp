@@ -70,11 +70,11 @@ ClosestPoint search_within(const EmbreeScene& scene, Search search, double radiu
 
 }  // namespace
 
-SurfaceQuery::SurfaceQuery(const Mesh& mesh, Run& run) {
-  auto data = std::make_shared<Data>(Data{EmbreeScene(mesh, run), {}, 0, 0});
+SurfaceQuery::SurfaceQuery(const Mesh& mesh, ExecutionContext& context) {
+  auto data = std::make_shared<Data>(Data{EmbreeScene(mesh, context), {}, 0, 0});
   data->corners.resize(mesh.triangles.size());
-  with_threads(run, [&] {
-    parallel_for(run, mesh.triangles.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  with_threads(context, [&] {
+    parallel_for(context, mesh.triangles.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) data->corners[t] = corners_of(mesh, t);
     });
   });

@@ -23,7 +23,7 @@ class SurfaceQuery {
  public:
   /// Cost: about 0.3 µs per triangle on two cores, 250 bytes per triangle.
   /// @throws InvalidInput  if the mesh has no triangle
-  explicit SurfaceQuery(const Mesh& mesh, Run& run = Run::silent());
+  explicit SurfaceQuery(const Mesh& mesh, ExecutionContext& context = ExecutionContext::silent());
 
   /// The point of the surface nearest to p; of several triangles at the same distance, the one of lowest index.
   ///

@@ -15,10 +15,10 @@ RTCDevice shared_device() {
   return device.get();
 }
 
-void fill_vertices(RTCGeometry geometry, const Mesh& mesh, const EmbreeScene& scene, const Run& run) {
+void fill_vertices(RTCGeometry geometry, const Mesh& mesh, const EmbreeScene& scene, const ExecutionContext& context) {
   auto* to = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                          3 * sizeof(float), mesh.vertices.size()));
-  parallel_for(run, mesh.vertices.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, mesh.vertices.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 local = scene.to_local(mesh.vertices[i]);
       for (int k = 0; k < 3; ++k) to[3 * i + k] = static_cast<float>(local[k]);
@@ -34,7 +34,7 @@ void fill_triangles(RTCGeometry geometry, const Mesh& mesh) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const Mesh& mesh, const Run& run) {
+EmbreeScene::EmbreeScene(const Mesh& mesh, const ExecutionContext& context) {
   if (mesh.triangles.empty()) throw InvalidInput("the mesh has no triangle to search; give one with at least one");
   const Box box = mesh.bounds();
   origin_ = box.center();
@@ -47,8 +47,8 @@ EmbreeScene::EmbreeScene(const Mesh& mesh, const Run& run) {
   rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_LOW);
   const std::shared_ptr<RTCGeometryTy> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE), rtcReleaseGeometry);
-  with_threads(run, [&] {
-    fill_vertices(geometry.get(), mesh, *this, run);
+  with_threads(context, [&] {
+    fill_vertices(geometry.get(), mesh, *this, context);
     fill_triangles(geometry.get(), mesh);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometry(scene_.get(), geometry.get());

@@ -15,7 +15,7 @@ class EmbreeScene {
  public:
   /// Cost: about 0.2 µs per triangle on two cores, 150 bytes per triangle.
   /// @throws InvalidInput  if the mesh has no triangle
-  explicit EmbreeScene(const Mesh& mesh, const Run& run = Run::silent());
+  explicit EmbreeScene(const Mesh& mesh, const ExecutionContext& context = ExecutionContext::silent());
 
   RTCScene handle() const { return scene_.get(); }
   /// A point of the model in the scene's coordinates: those of the mesh lie within the ball of radius 1.

@@ -15,9 +15,9 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t longest_loop = 400;        ///< edges; the cost goes with the third power
-constexpr std::size_t most_views = 100'000'000;  ///< of a fill's triangles from fills: some seconds
-constexpr double most_astray = 0.25;             ///< of the winding number half way between inside and outside
+constexpr std::size_t longest_loop = 400;       ///< edges; the cost goes with the third power
+constexpr std::size_t max_views = 100'000'000;  ///< of a fill's triangles from fills: some seconds
+constexpr double max_astray = 0.25;             ///< of the winding number half way between inside and outside
 
 constexpr std::uint32_t none = 0xffffffffu;
 
@@ -45,7 +45,7 @@ std::vector<std::vector<std::uint32_t>> boundary_loops(const Mesh& mesh) {
 }
 
 /// The triangulation of a closed loop that has the least area.
-std::vector<Triangle> least_area_fill(const Mesh& mesh, const std::vector<std::uint32_t>& loop) {
+std::vector<Triangle> min_area_fill(const Mesh& mesh, const std::vector<std::uint32_t>& loop) {
   const std::size_t n = loop.size();
   std::vector<double> least(n * n, 0);  // area between the loop's vertices i … j and the chord from j to i
   std::vector<std::uint32_t> apex(n * n, 0);
@@ -88,11 +88,11 @@ Mesh holes_filled(const Mesh& mesh, std::size_t& filled) {
     for (const std::uint32_t v : t)
       if (v >= mesh.vertices.size()) throw InvalidInput("a triangle uses a vertex that does not exist");
   std::vector<std::vector<Triangle>> fills;
-  for (const auto& loop : boundary_loops(mesh)) fills.push_back(least_area_fill(mesh, loop));
+  for (const auto& loop : boundary_loops(mesh)) fills.push_back(min_area_fill(mesh, loop));
   std::size_t triangles = 0;
   for (const auto& fill : fills) triangles += fill.size();
   filled = 0;
-  if (fills.size() * triangles > most_views) return mesh;
+  if (fills.size() * triangles > max_views) return mesh;
   // With all holes filled the winding number on a fill, between its two sides, is half an odd number. Without, it
   // differs from that by what is seen of the fills.
   const auto is_half_way = [&](const std::vector<Triangle>& fill) {
@@ -106,7 +106,7 @@ Mesh holes_filled(const Mesh& mesh, std::size_t& filled) {
     for (const auto& other : fills)
       for (const Triangle& t : other)
         if (&t != &largest) seen += share_of_view(mesh, t, p);
-    return std::abs(seen) < most_astray;
+    return std::abs(seen) < max_astray;
   };
   Mesh result = mesh;
   for (const auto& fill : fills)

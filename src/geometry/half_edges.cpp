@@ -30,9 +30,9 @@ HalfEdges::HalfEdges(std::span<const Triangle> triangles, std::size_t vertices)
   }
 }
 
-std::uint32_t HalfEdges::fans(std::size_t vertex) const {
+std::uint32_t HalfEdges::umbrellas(std::size_t vertex) const {
   std::uint32_t count = 0;
-  visit_fans(vertex, [&](std::uint32_t, std::uint32_t fan) { count = fan + 1; });
+  visit_umbrellas(vertex, [&](std::uint32_t, std::uint32_t umbrella) { count = umbrella + 1; });
   return count;
 }
 

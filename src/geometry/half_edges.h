@@ -27,12 +27,12 @@ class HalfEdges {
   /// Triangles at the vertex.
   std::uint32_t corners(std::size_t vertex) const { return start_[vertex + 1] - start_[vertex]; }
   /// Groups of triangles at the vertex that are connected across edges; 1 on a two-manifold.
-  std::uint32_t fans(std::size_t vertex) const;
+  std::uint32_t umbrellas(std::size_t vertex) const;
   /// Calls visit(half-edge, fan) for all half-edges that start at the vertex, fan by fan.
   template <typename Visit>
-  void visit_fans(std::size_t vertex, const Visit& visit) const {
+  void visit_umbrellas(std::size_t vertex, const Visit& visit) const {
     std::vector<std::uint32_t> visited;
-    std::uint32_t fan = 0;
+    std::uint32_t umbrella = 0;
     for (std::uint32_t at = start_[vertex]; at < start_[vertex + 1]; ++at) {
       if (std::find(visited.begin(), visited.end(), half_edges_from_[at]) != visited.end()) continue;
       // Back to where the fan begins, on a boundary, or once around.
@@ -42,10 +42,10 @@ class HalfEdges {
       std::uint32_t h = first;
       do {
         visited.push_back(h);
-        visit(h, fan);
+        visit(h, umbrella);
         h = opposite_[previous(h)];
       } while (h != none && h != first);
-      ++fan;
+      ++umbrella;
     }
   }
 

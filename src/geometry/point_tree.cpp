@@ -44,26 +44,26 @@ struct PointTree::Search {
   }
 };
 
-PointTree::PointTree(const std::vector<Vec3>& points, const Run& run)
+PointTree::PointTree(const std::vector<Vec3>& points, const ExecutionContext& context)
     : scale_(power_of_two_against(points)), points_(points.size()) {
-  parallel_for(run, points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points_[i] = points[i] * scale_;
   });
   std::sort(points_.begin(), points_.end(),
             [](const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
   points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
-  build(run);
+  build(context);
 }
 
 /// Level by level, the nodes of a level in parallel.
-void PointTree::build(const Run& run) {
+void PointTree::build(const ExecutionContext& context) {
   std::vector<std::size_t> ends{0, points_.size()};  // of the ranges of a level's nodes
   splits_.resize(1);
   while (points_.size() > leaf_size * (ends.size() - 1)) {
     const std::size_t nodes = ends.size() - 1;
     std::vector<std::size_t> next(2 * nodes + 1);
     splits_.resize(2 * nodes);
-    parallel_tasks(run, nodes, [&](std::size_t i) {
+    parallel_tasks(context, nodes, [&](std::size_t i) {
       const std::size_t begin = ends[i], end = ends[i + 1], mid = middle(begin, end);
       const auto at = [&](std::size_t k) { return points_.begin() + static_cast<std::ptrdiff_t>(k); };
       const int axis = longest_axis({points_.data() + begin, end - begin});

@@ -19,7 +19,7 @@ namespace evenmesh {
 class PointTree {
  public:
   /// @param points  finite; repeated ones are kept once
-  PointTree(const std::vector<Vec3>& points, const Run& run);
+  PointTree(const std::vector<Vec3>& points, const ExecutionContext& context);
 
   /// How many different points there are.
   std::size_t size() const { return points_.size(); }
@@ -36,7 +36,7 @@ class PointTree {
   };
   struct Search;
 
-  void build(const Run& run);
+  void build(const ExecutionContext& context);
   void search(std::size_t node, std::size_t begin, std::size_t end, Vec3 gap, double squared, Search& found) const;
 
   double scale_ = 1;           ///< power of two, so that squares neither overflow nor vanish

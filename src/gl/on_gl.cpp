@@ -32,9 +32,9 @@ Shape with_fields(const Shape& shape, const Replacement& replace) {
 
 Shape on_gl(const Shape& shape, const std::string& device) {
   return with_fields(shape, [&](const std::shared_ptr<const Field>& field) {
-    const Program* program = program_of(*field);
-    if (!program || program->nodes.size() > gl::longest_tape) return field;
-    return gl::make_tape_field(gl::shared_context(device), *program);
+    const ExpressionGraph* graph = graph_of(*field);
+    if (!graph || graph->nodes.size() > gl::longest_tape) return field;
+    return gl::make_tape_field(gl::shared_context(device), *graph);
   });
 }
 

@@ -88,19 +88,19 @@ class Band {
   }
 
   /// Sorts, and appends the normals: crossings count them.
-  void sort(std::vector<PackedNormal>& normals, const Run& run) {
-    parallel_sort(run, caught_);
+  void sort(std::vector<PackedNormal>& normals, const ExecutionContext& execution) {
+    parallel_sort(execution, caught_);
     first_source_ = static_cast<std::uint32_t>(normals.size());
     normals.reserve(normals.size() + caught_.size());
     for (const Caught& c : caught_) normals.push_back({c.normal});
   }
 
   /// Makes the slabs of the band, those of what was found and those of the solid.
-  RayCounts resolve(DexelAxis& found, DexelAxis& solid, const Run& run) const {
+  RayCounts resolve(DexelAxis& found, DexelAxis& solid, const ExecutionContext& execution) const {
     const std::size_t first_slab = first_row_ / brick_size;
     const std::size_t count = (end_q_ - first_row_ + brick_size - 1) / brick_size;
     std::vector<RayCounts> counts(count);
-    parallel_tasks(run, count, [&](std::size_t i) {
+    parallel_tasks(execution, count, [&](std::size_t i) {
       counts[i] = resolve_slab(static_cast<std::uint32_t>(i), found.slabs[first_slab + i], solid.slabs[first_slab + i]);
     });
     RayCounts sum{lost_, false};
@@ -129,7 +129,7 @@ class Band {
       }
       if (hits.empty()) continue;
       sort_hits(hits);
-      for (const RayHit& h : hits) found.crossings.push_back({h.source, h.t, h.cell, h.step > 0, h.made});
+      for (const RayHit& h : hits) found.crossings.push_back({h.source, h.t, h.cell, h.step > 0, h.synthetic});
       counts.unresolved += static_cast<std::size_t>(std::abs(sum));
       resolve_ray(hits, Winding::any, solid.crossings, counts);
     }
@@ -193,7 +193,7 @@ void drop_made(DexelSlab& slab) {
   for (std::size_t r = 0; r < slab.rays(); ++r) {
     const std::uint32_t end = slab.begin[r + 1];
     for (std::uint32_t c = std::exchange(begin, end); c < end; ++c)
-      if (!slab.crossings[c].made) slab.crossings[kept++] = slab.crossings[c];
+      if (!slab.crossings[c].synthetic) slab.crossings[kept++] = slab.crossings[c];
     slab.begin[r + 1] = kept;
   }
   slab.crossings.resize(kept);
@@ -201,9 +201,9 @@ void drop_made(DexelSlab& slab) {
 
 }  // namespace
 
-RasterSampler::Drawing RasterSampler::draw(const Grid& grid, const Box& bounds, Run& run) const {
+RasterSampler::Drawing RasterSampler::draw(const Grid& grid, const Box& bounds, ExecutionContext& execution) const {
   Drawing drawing;
-  TriDexel& solid = drawing.opinions;
+  TriDexel& solid = drawing.occupancy;
   solid.grid = grid;
   const Range range = range_of(grid, bounds);
   if (range.empty()) return drawing;
@@ -216,47 +216,48 @@ RasterSampler::Drawing RasterSampler::draw(const Grid& grid, const Box& bounds, 
     for (std::uint32_t row = range.first[q] / view_size * view_size; row <= range.last[q]; row += view_size) {
       Band band(grid, range, axis, row);
       for (const RayWindow& window : band.windows()) {
-        run.throw_if_cancelled();
+        execution.throw_if_cancelled();
         painter.paint(window, band);
       }
-      band.sort(drawing.normals, run);
-      const RayCounts counts = band.resolve(drawing.found[a], solid.axes[a], run);
+      band.sort(drawing.normals, execution);
+      const RayCounts counts = band.resolve(drawing.found[a], solid.axes[a], execution);
       solid.unresolved += counts.unresolved, solid.cut_by_bounds = solid.cut_by_bounds || counts.capped;
     }
   }
   return drawing;
 }
 
-TriDexel RasterSampler::scan(const Grid& grid, const Box& bounds, std::vector<PackedNormal>& normals, Run& run) const {
-  Drawing drawing = draw(grid, bounds, run);
-  vote(drawing.opinions, drawing.found, nullptr, run, rounding);
+TriDexel RasterSampler::scan(const Grid& grid, const Box& bounds, std::vector<PackedNormal>& normals,
+                             ExecutionContext& execution) const {
+  Drawing drawing = draw(grid, bounds, execution);
+  vote(drawing.occupancy, drawing.found, nullptr, execution, rounding);
   normals = std::move(drawing.normals);
-  return std::move(drawing.opinions);
+  return std::move(drawing.occupancy);
 }
 
-SampleSet RasterSampler::sample(const Grid& grid, const Box& bounds, Run& run) const {
+SampleSet RasterSampler::sample(const Grid& grid, const Box& bounds, ExecutionContext& execution) const {
   std::vector<PackedNormal> normals;
-  const TriDexel solid = scan(grid, bounds, normals, run);
+  const TriDexel solid = scan(grid, bounds, normals, execution);
   if (solid.size() == 0 && solid.unresolved > 0)
     throw UnusableInput(
         fmt::format("'{}' bounds no solid: its rays enter and do not leave, or the other way; draw its back faces, "
                     "too, or mesh it as an open surface (--method shell)",
                     name_));
-  return sample_dexels(solid, normals, run);
+  return sample_dexels(solid, normals, execution);
 }
 
-SampleSet RasterSampler::sample_surface(const Grid& grid, const Box& bounds, Run& run) const {
-  Drawing drawing = draw(grid, bounds, run);
+SampleSet RasterSampler::sample_surface(const Grid& grid, const Box& bounds, ExecutionContext& execution) const {
+  Drawing drawing = draw(grid, bounds, execution);
   for (DexelAxis& axis : drawing.found)
     for (DexelSlab& slab : axis.slabs) drop_made(slab);
   TriDexel surface;
   surface.grid = grid, surface.axes = std::move(drawing.found);
-  return sample_dexels(surface, drawing.normals, run);
+  return sample_dexels(surface, drawing.normals, execution);
 }
 
-double RasterSampler::solidity(const Box& bounds, Run& run) const {
+double RasterSampler::solidity(const Box& bounds, ExecutionContext& execution) const {
   constexpr std::size_t resolution = 64;  // as that of meshes
-  return agreement(draw(make_grid(bounds, resolution), bounds, run).opinions);
+  return agreement(draw(make_grid(bounds, resolution), bounds, execution).occupancy);
 }
 
 std::shared_ptr<const Sampler> RasterSampler::moved(const Affine& transform) const {

@@ -18,21 +18,22 @@ class RasterSampler final : public Sampler {
   RasterSampler(std::shared_ptr<RasterDevice> device, std::string name, const Box& bounds, const Affine& placement = {})
       : device_(std::move(device)), name_(std::move(name)), bounds_(bounds), placement_(placement) {}
 
-  SampleSet sample(const Grid& grid, const Box& bounds, Run& run) const override;
-  SampleSet sample_surface(const Grid& grid, const Box& bounds, Run& run) const override;
-  double solidity(const Box& bounds, Run& run) const override;
+  SampleSet sample(const Grid& grid, const Box& bounds, ExecutionContext& execution) const override;
+  SampleSet sample_surface(const Grid& grid, const Box& bounds, ExecutionContext& execution) const override;
+  double solidity(const Box& bounds, ExecutionContext& execution) const override;
   std::shared_ptr<const Sampler> moved(const Affine& transform) const override;
 
   /// The crossings, and the normals that they count. Cost: two passes of drawing per 512² rays at most, then sorting.
-  TriDexel scan(const Grid& grid, const Box& bounds, std::vector<PackedNormal>& normals, Run& run) const;
+  TriDexel scan(const Grid& grid, const Box& bounds, std::vector<PackedNormal>& normals,
+                ExecutionContext& execution) const;
 
  private:
   struct Drawing {
     std::array<DexelAxis, 3> found;     ///< all that rays meet
-    TriDexel opinions;                  ///< the solid that each direction sees by itself
+    TriDexel occupancy;                 ///< the solid that each direction sees by itself
     std::vector<PackedNormal> normals;  ///< counted by crossings
   };
-  Drawing draw(const Grid& grid, const Box& bounds, Run& run) const;
+  Drawing draw(const Grid& grid, const Box& bounds, ExecutionContext& execution) const;
 
   std::shared_ptr<RasterDevice> device_;
   std::string name_;

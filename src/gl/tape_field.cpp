@@ -17,9 +17,9 @@ std::string shader_text(const std::string& code, std::int32_t rows) {
 
 class TapeField final : public Field {
  public:
-  TapeField(std::shared_ptr<Context> context, const evenmesh::Program& program)
-      : on_cpu_(make_program_field(program)), context_(std::move(context)), device_(std::make_unique<Device>()) {
-    const Tape tape = compile_tape(program);
+  TapeField(std::shared_ptr<Context> context, const ExpressionGraph& graph)
+      : on_cpu_(make_graph_field(graph)), context_(std::move(context)), device_(std::make_unique<Device>()) {
+    const Tape tape = compile_tape(graph);
     const std::string values = shader_text(glsl_of_tape(tape), 1);
     const std::string gradients = shader_text(glsl_of_tape_gradient(tape), 4);
     context_->run([&] {
@@ -57,8 +57,8 @@ class TapeField final : public Field {
 
 }  // namespace
 
-std::shared_ptr<const Field> make_tape_field(std::shared_ptr<Context> context, const evenmesh::Program& program) {
-  return std::make_shared<TapeField>(std::move(context), program);
+std::shared_ptr<const Field> make_tape_field(std::shared_ptr<Context> context, const ExpressionGraph& graph) {
+  return std::make_shared<TapeField>(std::move(context), graph);
 }
 
 bool is_tape_field(const Field& field) {

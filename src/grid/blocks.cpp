@@ -7,10 +7,10 @@
 
 namespace evenmesh {
 
-void resize_samples(SampleSet& set, std::size_t count, bool with_sources, const Run& run) {
+void resize_samples(SampleSet& set, std::size_t count, bool with_sources, const ExecutionContext& context) {
   if (count > std::numeric_limits<std::uint32_t>::max())
     throw InvalidInput("more than 4 billion samples: lower the resolution");
-  parallel_tasks(run, 7, [&](std::size_t i) {
+  parallel_tasks(context, 7, [&](std::size_t i) {
     switch (i) {
       case 0:
         set.x.resize(count);
@@ -36,8 +36,8 @@ void resize_samples(SampleSet& set, std::size_t count, bool with_sources, const 
   });
 }
 
-void mark_axes(SampleSet& set, const Run& run) {
-  parallel_for(run, set.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
+void mark_axes(SampleSet& set, const ExecutionContext& context) {
+  parallel_for(context, set.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       SampleBlock& block = set.blocks[b];
       for (unsigned a = 1; a < 3; ++a) {
@@ -49,9 +49,9 @@ void mark_axes(SampleSet& set, const Run& run) {
   });
 }
 
-void sum_area(SampleSet& set, const Run& run) {
+void sum_area(SampleSet& set, const ExecutionContext& context) {
   std::vector<double> sums(set.blocks.size());
-  parallel_for(run, set.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, set.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b)
       for (std::uint32_t i = set.blocks[b].begin; i < set.blocks[b].end; ++i) sums[b] += set.area[i];
   });

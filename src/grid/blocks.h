@@ -10,10 +10,10 @@ namespace evenmesh {
 
 /// Sizes all arrays, in parallel: touching fresh memory costs as much as filling it.
 /// @param with_sources  whether that array is used
-void resize_samples(SampleSet& set, std::size_t count, bool with_sources, const Run& run);
+void resize_samples(SampleSet& set, std::size_t count, bool with_sources, const ExecutionContext& context);
 
 /// Sets every block's axis_begin from the edge codes.
-void mark_axes(SampleSet& set, const Run& run);
+void mark_axes(SampleSet& set, const ExecutionContext& context);
 
 /// Leaves out the samples for which keep(index) is false, and blocks without samples. The order stays; the rest bounds
 /// no solid any more unless whole parts of the surface go.
@@ -21,7 +21,7 @@ template <typename Keep>
 void keep_samples(SampleSet& set, const Keep& keep);
 
 /// Sets total_area from the samples, summed block by block in order.
-void sum_area(SampleSet& set, const Run& run);
+void sum_area(SampleSet& set, const ExecutionContext& context);
 
 template <typename Keep>
 void keep_samples(SampleSet& set, const Keep& keep) {

@@ -78,11 +78,11 @@ std::uint64_t transposed(std::uint64_t x) {
 
 }  // namespace
 
-std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const Run& run) {
+std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const ExecutionContext& context) {
   constexpr std::size_t piece = 1024;
   const BlockTable table(samples);
   std::vector<std::vector<CubeBrick>> of_piece((samples.blocks.size() + piece - 1) / piece);
-  parallel_tasks(run, of_piece.size(), [&](std::size_t p) {
+  parallel_tasks(context, of_piece.size(), [&](std::size_t p) {
     of_piece[p].reserve(piece * 5 / 4);
     for (std::size_t b = p * piece; b < std::min(samples.blocks.size(), (p + 1) * piece); ++b)
       bricks_of_block(samples, table, b, of_piece[p]);

@@ -19,7 +19,7 @@ struct CubeBrick {
 
 /// All bricks with a crossed cube, in the order of the blocks; a brick without samples of its own comes with the first
 /// block that has it as a lower neighbour.
-std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const Run& run);
+std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const ExecutionContext& context);
 
 /// Finds the loops of one brick's cubes; reusable, one per thread.
 class CubeWalker {

@@ -4,18 +4,18 @@
 
 namespace evenmesh {
 
-BrickUnion::BrickUnion(const SampleSet& samples, const std::vector<CubeBrick>& bricks, const Run& run)
+BrickUnion::BrickUnion(const SampleSet& samples, const std::vector<CubeBrick>& bricks, const ExecutionContext& context)
     : own_(bricks.size()), parent_(samples.size()), across_(bricks.size()) {
   for (std::size_t b = 0; b < bricks.size(); ++b)
     if (const std::int64_t block = bricks[b].block[0]; block >= 0)
       own_[b] = {samples.blocks[block].begin, samples.blocks[block].end};
-  parallel_for(run, parent_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, parent_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) parent_[i] = static_cast<std::uint32_t>(i);
   });
 }
 
-void BrickUnion::flatten(const Run& run) {
-  parallel_for(run, parent_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+void BrickUnion::flatten(const ExecutionContext& context) {
+  parallel_for(context, parent_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::uint32_t root = static_cast<std::uint32_t>(i);
       while (parent_[root] != root) root = parent_[root];
@@ -24,9 +24,9 @@ void BrickUnion::flatten(const Run& run) {
   });
 }
 
-void BrickUnion::settle(const Run& run) {
-  flatten(run);
-  parallel_for(run, across_.size(), 64, [&](std::size_t begin, std::size_t end) {
+void BrickUnion::settle(const ExecutionContext& context) {
+  flatten(context);
+  parallel_for(context, across_.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       // Few roots meet in one brick: looking through the pairs found so far, the latest first, is fast.
       auto& pairs = across_[b];

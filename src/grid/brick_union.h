@@ -13,7 +13,7 @@ namespace evenmesh {
 /// Disjoint sets of samples that several threads may join at the same time, each for bricks of its own.
 class BrickUnion {
  public:
-  BrickUnion(const SampleSet& samples, const std::vector<CubeBrick>& bricks, const Run& run);
+  BrickUnion(const SampleSet& samples, const std::vector<CubeBrick>& bricks, const ExecutionContext& context);
 
   /// Joins two samples on the cubes of brick b. Of joins for one brick none may run at the same time.
   void join(std::size_t b, std::uint32_t s, std::uint32_t t) {
@@ -26,10 +26,10 @@ class BrickUnion {
   }
   /// Joins what belongs together across bricks; call it once, at the end. A set's root is its lowest sample, the same
   /// for any number of threads.
-  void settle(const Run& run);
+  void settle(const ExecutionContext& context);
 
   /// Makes every sample's parent the root of its set.
-  void flatten(const Run& run);
+  void flatten(const ExecutionContext& context);
 
   std::vector<std::uint32_t>& parent() { return parent_; }
 
@@ -41,8 +41,9 @@ class BrickUnion {
 
 /// Calls visit(brick, samples of a loop, length) for all loops of crossings, in parallel over the bricks.
 template <typename Visit>
-void for_loops(const SampleSet& samples, const std::vector<CubeBrick>& bricks, const Run& run, const Visit& visit) {
-  parallel_for(run, bricks.size(), 64, [&](std::size_t begin, std::size_t end) {
+void for_loops(const SampleSet& samples, const std::vector<CubeBrick>& bricks, const ExecutionContext& context,
+               const Visit& visit) {
+  parallel_for(context, bricks.size(), 64, [&](std::size_t begin, std::size_t end) {
     CubeWalker walker(samples);
     for (std::size_t b = begin; b < end; ++b)
       walker.walk(bricks[b], [&](const std::uint32_t* loop, int n) { visit(b, loop, n); });
@@ -52,17 +53,17 @@ void for_loops(const SampleSet& samples, const std::vector<CubeBrick>& bricks, c
 /// The lowest sample of the connected part that each sample belongs to; neighbours are connected where same(s, t).
 /// Cost: about 20 ns per sample and core.
 template <typename Same>
-std::vector<std::uint32_t> part_roots(const SampleSet& samples, const std::vector<CubeBrick>& bricks, const Run& run,
-                                      const Same& same) {
-  BrickUnion sets(samples, bricks, run);
-  for_loops(samples, bricks, run, [&](std::size_t b, const std::uint32_t* loop, int n) {
+std::vector<std::uint32_t> component_roots(const SampleSet& samples, const std::vector<CubeBrick>& bricks,
+                                           const ExecutionContext& context, const Same& same) {
+  BrickUnion sets(samples, bricks, context);
+  for_loops(samples, bricks, context, [&](std::size_t b, const std::uint32_t* loop, int n) {
     for (int i = 0; i < n; ++i) {
       const std::uint32_t s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
       if (same(s, t)) sets.join(b, s, t);
     }
   });
-  sets.settle(run);
-  sets.flatten(run);
+  sets.settle(context);
+  sets.flatten(context);
   return std::move(sets.parent());
 }
 

@@ -55,8 +55,8 @@ void copy_block(const SampleSet& fine, const SampleBlock& from, int axis, Sample
 
 }  // namespace
 
-SampleSet coarsen(const SampleSet& fine, Run& run) {
-  return with_threads(run, [&] {
+SampleSet coarsen(const SampleSet& fine, ExecutionContext& context) {
+  return with_threads(context, [&] {
     SampleSet coarse;
     coarse.grid = {fine.grid.origin, 2 * fine.grid.spacing, fine.grid.size};
     for (std::uint32_t& n : coarse.grid.size) n = n / 2 + 1;
@@ -64,7 +64,7 @@ SampleSet coarsen(const SampleSet& fine, Run& run) {
     coarse.cut_by_bounds = fine.cut_by_bounds;
     const std::vector<CoarseBlock> groups = group_blocks(fine);
     std::vector<std::uint32_t> kept(groups.size());
-    parallel_for(run, groups.size(), 32, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, groups.size(), 32, [&](std::size_t begin, std::size_t end) {
       for (std::size_t g = begin; g < end; ++g) {
         for (std::uint32_t c = 0; c < groups[g].children; ++c) {
           const SampleBlock& block = fine.blocks[groups[g].first_child + c];
@@ -85,8 +85,8 @@ SampleSet coarsen(const SampleSet& fine, Run& run) {
       child.push_back(static_cast<std::uint32_t>(g));
       sum += kept[g];
     }
-    resize_samples(coarse, sum, !fine.source.empty(), run);
-    parallel_for(run, coarse.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+    resize_samples(coarse, sum, !fine.source.empty(), context);
+    parallel_for(context, coarse.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         const CoarseBlock& group = groups[child[b]];
         std::uint32_t out = coarse.blocks[b].begin;
@@ -97,7 +97,7 @@ SampleSet coarsen(const SampleSet& fine, Run& run) {
         }
       }
     });
-    sum_area(coarse, run);
+    sum_area(coarse, context);
     return coarse;
   });
 }

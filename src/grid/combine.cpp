@@ -43,8 +43,8 @@ struct Taken {
 
 class Combiner {
  public:
-  Combiner(const SampleSet& a, const SampleSet& b, Boolean operation, const Run& run)
-      : a_(a), b_(b), operation_(operation), in_a_(a, run), in_b_(b, run) {}
+  Combiner(const SampleSet& a, const SampleSet& b, Boolean operation, const ExecutionContext& context)
+      : a_(a), b_(b), operation_(operation), in_a_(a, context), in_b_(b, context) {}
 
   /// Appends the samples that a brick of the result keeps, in order.
   void take(const Pair& pair, std::vector<Taken>& taken) const {
@@ -108,11 +108,11 @@ void copy_sample(const SampleSet& from, std::uint32_t index, bool turned, Sample
 
 }  // namespace
 
-SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, const Run& run) {
-  const Combiner combiner(a, b, operation, run);
+SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, const ExecutionContext& context) {
+  const Combiner combiner(a, b, operation, context);
   const std::vector<Pair> pairs = pairs_of(a, b);
   std::vector<std::uint32_t> count(pairs.size());
-  parallel_for(run, pairs.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, pairs.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<Taken> taken;
     for (std::size_t p = begin; p < end; ++p) {
       combiner.take(pairs[p], taken);
@@ -131,8 +131,8 @@ SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, con
     pair_of_block.push_back(p);
     total += count[p];
   }
-  resize_samples(set, total, false, run);
-  parallel_for(run, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+  resize_samples(set, total, false, context);
+  parallel_for(context, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<Taken> taken;
     for (std::size_t block = begin; block < end; ++block) {
       combiner.take(pairs[pair_of_block[block]], taken);
@@ -140,8 +140,8 @@ SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, con
       for (const Taken& t : taken) copy_sample(t.from_b ? b : a, t.index, t.from_b && combiner.turns_b(), set, at++);
     }
   });
-  mark_axes(set, run);
-  sum_area(set, run);
+  mark_axes(set, context);
+  sum_area(set, context);
   return set;
 }
 

@@ -17,6 +17,6 @@ enum class Boolean { unite, intersect, subtract };
 /// threads. Cost: about 50 ns per sample of A and B.
 /// @param a, b  on the same grid
 /// Based on [Raster2Mesh §5.1.2].
-SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, const Run& run);
+SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, const ExecutionContext& context);
 
 }  // namespace evenmesh

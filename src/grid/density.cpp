@@ -9,12 +9,12 @@
 
 namespace evenmesh {
 
-double weigh_by_density(SampleSet& samples, const Density& density, Run& run) {
+double weigh_by_density(SampleSet& samples, const Density& density, ExecutionContext& context) {
   struct Sums {
     double wanted = 0, weight = 0, largest = 0;
   };
   std::vector<Sums> of_block(samples.blocks.size());
-  parallel_for(run, samples.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, samples.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       const SampleBlock& block = samples.blocks[b];
       for (std::uint32_t i = block.begin; i < block.end; ++i) {
@@ -36,7 +36,7 @@ double weigh_by_density(SampleSet& samples, const Density& density, Run& run) {
   for (const Sums& s : of_block)
     all.wanted += s.wanted, all.weight += s.weight, all.largest = std::max(all.largest, s.largest);
   const auto scale = static_cast<float>(samples.total_area / all.weight);
-  parallel_for(run, samples.size(), 65536, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, samples.size(), 65536, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) samples.area[i] *= scale;
   });
   return all.largest * samples.total_area / all.wanted;

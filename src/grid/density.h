@@ -14,6 +14,6 @@ namespace evenmesh {
 /// wanted per area. Returns the largest density over its mean: so many times fewer samples than on average has the
 /// smallest cell.
 /// @throws InvalidInput  the density is not above 0 and finite at a sample
-double weigh_by_density(SampleSet& samples, const Density& density, Run& run);
+double weigh_by_density(SampleSet& samples, const Density& density, ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -52,8 +52,8 @@ std::vector<Placed> placed(const Dexels& dexels) {
 }
 
 /// All directions must tell the same inside: that of the rays along x.
-void check_agreement(const SampleSet& samples, const Run& run) {
-  const InsideRuns inside(samples, run);
+void check_agreement(const SampleSet& samples, const ExecutionContext& context) {
+  const InsideRuns inside(samples, context);
   const auto [nx, ny, nz] = samples.grid.size;
   std::size_t crossings = 0;
   for (const SampleBlock& block : samples.blocks)
@@ -102,12 +102,12 @@ Dexels dexels_of(const SampleSet& samples) {
   return dexels;
 }
 
-SampleSet samples_of(const Dexels& dexels, const Run& run) {
+SampleSet samples_of(const Dexels& dexels, const ExecutionContext& context) {
   check(dexels);
   const std::vector<Placed> list = placed(dexels);
   SampleSet set;
   set.grid = {dexels.origin, dexels.spacing, dexels.size};
-  resize_samples(set, list.size(), false, run);
+  resize_samples(set, list.size(), false, context);
   for (std::uint32_t s = 0; s < list.size(); ++s) {
     const Dexels::Crossing& c = dexels.crossings[list[s].crossing];
     const auto brick = morton_decode(list[s].key >> 12);
@@ -122,17 +122,17 @@ SampleSet samples_of(const Dexels& dexels, const Run& run) {
     set.edge[s] = edge_of(c), set.normal[s] = {c.normal};
     set.area[s] = static_cast<float>(sample_area(unpack_normal({c.normal}), c.axis, dexels.spacing));
   }
-  mark_axes(set, run);
-  sum_area(set, run);
-  check_agreement(set, run);
+  mark_axes(set, context);
+  sum_area(set, context);
+  check_agreement(set, context);
   return set;
 }
 
 Shape shape_from_dexels(const Dexels& dexels, std::string name) {
-  const Run& run = Run::silent();
-  const SampleSet samples = samples_of(dexels, run);
+  const ExecutionContext& context = ExecutionContext::silent();
+  const SampleSet samples = samples_of(dexels, context);
   if (samples.size() == 0) throw UnusableInput(name + " has no crossing, so there is no solid");
-  return shape_from_mesh(dual_surface(samples, run), std::move(name));
+  return shape_from_mesh(dual_surface(samples, context), std::move(name));
 }
 
 }  // namespace evenmesh

@@ -10,6 +10,6 @@ namespace evenmesh {
 Dexels dexels_of(const SampleSet& samples);
 
 /// @throws UnusableInput  crossings beyond the grid, twice on an edge, or that do not agree on what is inside
-SampleSet samples_of(const Dexels& dexels, const Run& run);
+SampleSet samples_of(const Dexels& dexels, const ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -38,17 +38,17 @@ std::array<std::uint32_t, 4> outward(const std::array<std::uint32_t, 4>& slots, 
 
 }  // namespace
 
-Mesh dual_surface(const SampleSet& samples, const Run& run) {
+Mesh dual_surface(const SampleSet& samples, const ExecutionContext& context) {
   std::vector<Vec3> position(samples.size());
-  parallel_for(run, samples.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, samples.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b)
       for (std::uint32_t s = samples.blocks[b].begin; s < samples.blocks[b].end; ++s)
         position[s] = samples.block_center(samples.blocks[b]) + Vec3{samples.x[s], samples.y[s], samples.z[s]};
   });
-  const std::vector<CubeBrick> bricks = cube_bricks(samples, run);
+  const std::vector<CubeBrick> bricks = cube_bricks(samples, context);
   std::vector<std::uint32_t> first(bricks.size() + 1, 0);
   const auto each = [&](const auto& visit) {
-    parallel_for(run, bricks.size(), 64, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, bricks.size(), 64, [&](std::size_t begin, std::size_t end) {
       CubeWalker walker(samples);
       for (std::size_t b = begin; b < end; ++b)
         walker.walk_edges(bricks[b], [&](const std::uint32_t* loop, const std::uint8_t* edges, int length) {
@@ -68,7 +68,7 @@ Mesh dual_surface(const SampleSet& samples, const Run& run) {
     for (int i = 0; i < length; ++i) slots[loop[i]][edges[i] & 3u] = v;
   });
   mesh.triangles.resize(2 * samples.size());
-  parallel_for(run, samples.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, samples.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const auto q = outward(slots[s], samples.edge[s]);
       const auto diagonal = [&](std::size_t a, std::size_t b) {

@@ -14,6 +14,6 @@ namespace evenmesh {
 /// of threads. As many vertices as samples, twice as many triangles. Cost: about 0.4 µs per sample and core.
 /// Based on Ju, Losasso, Schaefer, Warren, Dual contouring of Hermite data, ToG 21(3), 2002, and, for several loops in
 /// a cube, Nielson, Dual marching cubes, IEEE Visualization 2004.
-Mesh dual_surface(const SampleSet& samples, const Run& run);
+Mesh dual_surface(const SampleSet& samples, const ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -4,7 +4,7 @@
 
 namespace evenmesh {
 
-InsideRuns::InsideRuns(const SampleSet& samples, const Run& run) : size_(samples.grid.size) {
+InsideRuns::InsideRuns(const SampleSet& samples, const ExecutionContext& context) : size_(samples.grid.size) {
   begin_.assign(std::size_t(size_[1]) * size_[2] + 1, 0);
   const auto each = [&](const auto& visit) {
     for (const SampleBlock& block : samples.blocks)
@@ -19,7 +19,7 @@ InsideRuns::InsideRuns(const SampleSet& samples, const Run& run) : size_(samples
   cell_.resize(begin_.back());
   std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
   each([&](std::size_t ray, std::uint16_t cell) { cell_[next[ray]++] = cell; });
-  parallel_for(run, begin_.size() - 1, 65536, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, begin_.size() - 1, 65536, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) std::sort(cell_.begin() + begin_[r], cell_.begin() + begin_[r + 1]);
   });
 }

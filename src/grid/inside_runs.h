@@ -15,7 +15,7 @@ class InsideRuns {
  public:
   /// @param samples  of a solid: entering and leaving in turn along every ray
   /// Cost: about 10 ns per sample.
-  InsideRuns(const SampleSet& samples, const Run& run);
+  InsideRuns(const SampleSet& samples, const ExecutionContext& context);
 
   /// Whether grid point (i, j, k) is inside; points beyond the grid are not. Cost: a load or two.
   bool operator()(std::int32_t i, std::int32_t j, std::int32_t k) const {

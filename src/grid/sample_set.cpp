@@ -7,12 +7,12 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t kMaxResolution = 8192;
+constexpr std::size_t max_resolution = 8192;
 
 // Where the bounds' lower corner lies in its cell. Three different, irrational-looking fractions, so that symmetric
 // models and round coordinates do not fall onto grid planes, nor onto diagonals of cells.
-constexpr double kOffset[3] = {0.3819660113, 0.7071067812, 0.5436890127};
-constexpr double kMargin = 2.0;  // cells
+constexpr double offset[3] = {0.3819660113, 0.7071067812, 0.5436890127};
+constexpr double margin = 2.0;  // cells
 
 std::uint32_t to_unorm16(double v) {
   return static_cast<std::uint32_t>(std::floor((v * 0.5 + 0.5) * 65534.0 + 0.5));
@@ -29,16 +29,16 @@ double sign_of(double v) {
 Grid make_grid(const Box& bounds, std::size_t resolution) {
   if (bounds.empty() || !is_finite(bounds.lo) || !is_finite(bounds.hi) || !(bounds.longest_side() > 0))
     throw InvalidInput("the bounds are empty or not finite: give a box with finite corners and at least one side > 0");
-  if (resolution < 1 || resolution > kMaxResolution)
+  if (resolution < 1 || resolution > max_resolution)
     throw InvalidInput("resolution " + std::to_string(resolution) + " is out of range: choose 1 to 8192");
   Grid grid;
   grid.spacing = bounds.longest_side() / static_cast<double>(resolution);
   if (!(grid.spacing > 0) || !std::isfinite(1.0 / grid.spacing))
     throw InvalidInput("the bounds are too small for a grid: scale the model up");
   for (int a = 0; a < 3; ++a) {
-    const double before = kMargin + kOffset[a];
+    const double before = margin + offset[a];
     grid.origin[a] = bounds.lo[a] - before * grid.spacing;
-    const double cells = (bounds.hi[a] - bounds.lo[a]) / grid.spacing + before + kMargin;
+    const double cells = (bounds.hi[a] - bounds.lo[a]) / grid.spacing + before + margin;
     grid.size[static_cast<std::size_t>(a)] = static_cast<std::uint32_t>(std::ceil(cells)) + 1;
   }
   return grid;

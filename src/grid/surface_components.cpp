@@ -7,10 +7,10 @@
 
 namespace evenmesh {
 
-SurfaceParts surface_parts(const SampleSet& samples, Run& run) {
-  const std::vector<std::uint32_t> roots =
-      part_roots(samples, cube_bricks(samples, run), run, [](std::uint32_t, std::uint32_t) { return true; });
-  SurfaceParts parts;
+SurfaceComponents surface_components(const SampleSet& samples, ExecutionContext& context) {
+  const std::vector<std::uint32_t> roots = component_roots(samples, cube_bricks(samples, context), context,
+                                                           [](std::uint32_t, std::uint32_t) { return true; });
+  SurfaceComponents parts;
   parts.part.resize(samples.size());
   for (std::uint32_t i = 0; i < roots.size(); ++i) {
     const bool first = roots[i] == i;
@@ -21,7 +21,7 @@ SurfaceParts surface_parts(const SampleSet& samples, Run& run) {
   return parts;
 }
 
-std::vector<double> volumes_within(const SurfaceParts& parts, const SampleSet& samples) {
+std::vector<double> volumes_within(const SurfaceComponents& parts, const SampleSet& samples) {
   std::vector<double> volume(parts.area.size(), 0);
   for (const SampleBlock& block : samples.blocks)
     for (std::uint32_t s = block.begin; s < block.end_of_axis(0); ++s) {
@@ -31,12 +31,12 @@ std::vector<double> volumes_within(const SurfaceParts& parts, const SampleSet& s
   return volume;
 }
 
-std::size_t drop_dust(SampleSet& samples, double least_area, Run& run) {
-  const SurfaceParts parts = surface_parts(samples, run);
+std::size_t drop_small_components(SampleSet& samples, double min_area, ExecutionContext& context) {
+  const SurfaceComponents parts = surface_components(samples, context);
   const auto dropped = static_cast<std::size_t>(
-      std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < least_area; }));
+      std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < min_area; }));
   if (dropped == 0) return 0;
-  keep_samples(samples, [&](std::uint32_t i) { return parts.area[parts.part[i]] >= least_area; });
+  keep_samples(samples, [&](std::uint32_t i) { return parts.area[parts.part[i]] >= min_area; });
   return dropped;
 }
 
@@ -51,8 +51,8 @@ struct Crossing {
 
 }  // namespace
 
-std::size_t fill_cavities(SampleSet& samples, Run& run) {
-  const SurfaceParts parts = surface_parts(samples, run);
+std::size_t fill_cavities(SampleSet& samples, ExecutionContext& context) {
+  const SurfaceComponents parts = surface_components(samples, context);
   if (parts.area.size() < 2) return 0;
   const std::vector<double> volume = volumes_within(parts, samples);
   std::vector<Crossing> crossings;
@@ -63,7 +63,7 @@ std::size_t fill_cavities(SampleSet& samples, Run& run) {
       const std::uint64_t j = brick_size * block.brick[1] + edge.j(), k = brick_size * block.brick[2] + edge.k();
       crossings.push_back({k << 16 | j, cell, parts.part[s]});
     }
-  parallel_sort(run, crossings);
+  parallel_sort(context, crossings);
   // A part that lies within another one has an odd number of that one's crossings before its own.
   std::vector<char> dropped(volume.size(), 0), seen(volume.size(), 0);
   for (std::size_t p = 0; p < volume.size(); ++p) dropped[p] = volume[p] <= 0;

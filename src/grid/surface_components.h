@@ -9,21 +9,21 @@
 
 namespace evenmesh {
 
-struct SurfaceParts {
+struct SurfaceComponents {
   std::vector<std::uint32_t> part;  ///< of every sample, numbered from 0 by first sample
   std::vector<double> area;         ///< of every part, model units squared
 };
 /// Cost: about 50 ns per sample.
-SurfaceParts surface_parts(const SampleSet& samples, Run& run);
+SurfaceComponents surface_components(const SampleSet& samples, ExecutionContext& context);
 
 /// The volume within every part, from its crossings along x, in cells of the grid. Cavities come out negative.
-std::vector<double> volumes_within(const SurfaceParts& parts, const SampleSet& samples);
+std::vector<double> volumes_within(const SurfaceComponents& parts, const SampleSet& samples);
 
 /// Leaves out the parts with less than `least_area`; returns how many.
-std::size_t drop_dust(SampleSet& samples, double least_area, Run& run);
+std::size_t drop_small_components(SampleSet& samples, double min_area, ExecutionContext& context);
 
 /// Fills what the outside does not reach: cavities go, with all that lies in them. Returns how many parts of surface
-/// that were. Cost: as surface_parts().
-std::size_t fill_cavities(SampleSet& samples, Run& run);
+/// that were. Cost: as surface_components().
+std::size_t fill_cavities(SampleSet& samples, ExecutionContext& context);
 
 }  // namespace evenmesh

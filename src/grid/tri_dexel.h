@@ -21,7 +21,7 @@ struct DexelCrossing {
   float t = 0;  ///< position within the cell, [0, 1)
   std::uint16_t cell = 0;  ///< grid point just below the crossing, index along the ray
   bool enters = false;     ///< the grid point above is inside, the one below outside
-  bool made = false;       ///< no triangle is here: put by vote or by the bounds, normal along the axis
+  bool synthetic = false;  ///< no triangle is here: put by vote or by the bounds, normal along the axis
 };
 
 /// Eight neighbouring rows of rays; the unit of parallel work. CSR over its rays, crossings sorted by cell.
@@ -66,13 +66,13 @@ struct TriDexel {
 /// @param bounds  empty: the mesh must fit into the grid; otherwise the solid is cut by this box and closed on its
 /// faces
 /// @throws InvalidInput  an index is out of range, a coordinate not finite, or the mesh does not fit into the grid
-TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run = Run::silent(), const Box& bounds = {},
-                   Winding winding = Winding::any);
+TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, ExecutionContext& context = ExecutionContext::silent(),
+                   const Box& bounds = {}, Winding winding = Winding::any);
 
 /// The same, without a vote: each direction says what it sees.
-TriDexel scan_rays(const Mesh& mesh, const Grid& grid, Run& run, Winding winding = Winding::any);
+TriDexel scan_rays(const Mesh& mesh, const Grid& grid, ExecutionContext& context, Winding winding = Winding::any);
 
-class Witnesses;
+class ExtraDirections;
 
 /// Replaces the three directions' opinions, where they differ, by the majority of theirs and the witnesses', if there
 /// are, point by point, and rebuilds the crossings from that one sign grid. `raw[a]` holds every crossing of axis a as
@@ -81,16 +81,16 @@ class Witnesses;
 /// disagreements,
 ///                  and such crossings are moved
 /// Cost: O(grid points / 64 + crossings), and 0.3 µs for every point in dispute.
-void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const Witnesses* witnesses, const Run& run,
-          double rounding = 0);
+void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const ExtraDirections* extra_directions,
+          const ExecutionContext& context, double rounding = 0);
 
 /// The crossings of a solid in blocks, with the normals of the mesh it was scanned from.
-SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const Run& run);
+SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const ExecutionContext& context);
 
 /// Where a crossing has no normal: one is fitted to the samples around it.
 inline constexpr PackedNormal no_normal{0xffffffffu};
 
 /// The same with the normals that DexelCrossing::source counts; of either orientation. The samples have no sources.
-SampleSet sample_dexels(const TriDexel& solid, std::span<const PackedNormal> normals, const Run& run);
+SampleSet sample_dexels(const TriDexel& solid, std::span<const PackedNormal> normals, const ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -104,7 +104,7 @@ class SceneReader {
   void place(std::size_t mesh, const PartPlacement& placement) {
     std::map<std::size_t, std::uint32_t> base_of_accessor;
     for (const Json& primitive : data_.list_in(data_.list("meshes")[mesh], "primitives")) {
-      source_.run->throw_if_cancelled();
+      source_.context->throw_if_cancelled();
       budget_.spend(InstanceBudget::visit);
       const std::size_t mode = data_.index(primitive, "mode", 7).value_or(4);
       if (mode < 4) continue;  // points and lines

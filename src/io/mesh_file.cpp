@@ -95,13 +95,13 @@ MeshOrPoints parse(Source source) {
   }
 }
 
-MeshOrPoints load(const std::filesystem::path& path, Run& run) {
-  run.throw_if_cancelled();
+MeshOrPoints load(const std::filesystem::path& path, ExecutionContext& context) {
+  context.throw_if_cancelled();
   const std::string name = name_of_input(path);
   try {
     const FileBytes bytes = load_file(path);
-    run.throw_if_cancelled();
-    return with_threads(run, [&] { return parse({bytes.view(), name, &run}); });
+    context.throw_if_cancelled();
+    return with_threads(context, [&] { return parse({bytes.view(), name, &context}); });
   } catch (const std::bad_alloc&) {
     throw UnusableInput(name + ": does not fit into the memory; reduce it or use a larger machine");
   }
@@ -142,28 +142,29 @@ void require_writable(const Mesh& mesh) {
 }  // namespace
 
 Mesh parse_mesh(std::string_view bytes, std::string_view name) {
-  return mesh_of(parse({bytes, name, &Run::silent()}), name);
+  return mesh_of(parse({bytes, name, &ExecutionContext::silent()}), name);
 }
 
-Mesh read_mesh(const std::filesystem::path& path, Run& run) {
-  return mesh_of(load(path, run), name_of_input(path));
+Mesh read_mesh(const std::filesystem::path& path, ExecutionContext& context) {
+  return mesh_of(load(path, context), name_of_input(path));
 }
 
 PointCloud parse_points(std::string_view bytes, std::string_view name) {
-  return points_of(parse({bytes, name, &Run::silent()}), name);
+  return points_of(parse({bytes, name, &ExecutionContext::silent()}), name);
 }
 
-PointCloud read_points(const std::filesystem::path& path, Run& run) {
-  return points_of(load(path, run), name_of_input(path));
+PointCloud read_points(const std::filesystem::path& path, ExecutionContext& context) {
+  return points_of(load(path, context), name_of_input(path));
 }
 
-std::variant<Mesh, PointCloud> parse_mesh_or_points(std::string_view bytes, std::string_view name, Run& run) {
-  run.throw_if_cancelled();
-  return with_threads(run, [&] { return parse({bytes, name, &run}); });
+std::variant<Mesh, PointCloud> parse_mesh_or_points(std::string_view bytes, std::string_view name,
+                                                    ExecutionContext& context) {
+  context.throw_if_cancelled();
+  return with_threads(context, [&] { return parse({bytes, name, &context}); });
 }
 
-std::variant<Mesh, PointCloud> read_mesh_or_points(const std::filesystem::path& path, Run& run) {
-  return load(path, run);
+std::variant<Mesh, PointCloud> read_mesh_or_points(const std::filesystem::path& path, ExecutionContext& context) {
+  return load(path, context);
 }
 
 std::string serialize_mesh(const Mesh& mesh, MeshFormat format) {

@@ -17,7 +17,7 @@ namespace {
 /// Files are read in pieces of about this many bytes, in parallel; pieces do not depend on the number of threads.
 constexpr std::size_t piece_size = 1 << 20;
 /// So that an index relative to the vertices before cannot wrap around in 32 bits.
-constexpr std::uint64_t most_vertices = std::uint64_t{1} << 31;
+constexpr std::uint64_t max_vertices = std::uint64_t{1} << 31;
 
 /// What a piece may refer to; known only after all pieces were read.
 struct Limits {
@@ -118,7 +118,7 @@ class PieceReader {
       const bool valid = relative ? before + here + index >= 0 : static_cast<std::uint64_t>(index) <= limits_->total;
       if (!valid) out_of_range(from, index, relative ? limits_->before + piece_.vertices.size() : limits_->total);
     }
-    const bool representable = index > -static_cast<std::int64_t>(most_vertices) && index < std::int64_t{0xffffffff};
+    const bool representable = index > -static_cast<std::int64_t>(max_vertices) && index < std::int64_t{0xffffffff};
     if (!representable) relative = false;
     if (!representable) return 0xffffffff;
     return static_cast<std::uint32_t>(relative ? here + index : index - 1);
@@ -183,9 +183,9 @@ Mesh join(const Source& source, std::vector<Piece>& pieces) {
     triangles[i + 1] = triangles[i] + pieces[i].triangles.size();
   }
   const std::uint64_t total = limits.back().before;
-  if (total > most_vertices) fail(source, "has more than 2,147,483,648 vertices; split it");
+  if (total > max_vertices) fail(source, "has more than 2,147,483,648 vertices; split it");
   std::vector<char> valid(pieces.size());
-  parallel_tasks(*source.run, pieces.size(), [&](std::size_t i) {
+  parallel_tasks(*source.context, pieces.size(), [&](std::size_t i) {
     limits[i].total = total;
     valid[i] = resolve(pieces[i], limits[i]);
   });
@@ -196,7 +196,7 @@ Mesh join(const Source& source, std::vector<Piece>& pieces) {
   Mesh mesh;
   mesh.vertices.resize(total);
   mesh.triangles.resize(triangles.back());
-  parallel_tasks(*source.run, pieces.size(), [&](std::size_t i) {
+  parallel_tasks(*source.context, pieces.size(), [&](std::size_t i) {
     std::copy(pieces[i].vertices.begin(), pieces[i].vertices.end(), mesh.vertices.data() + limits[i].before);
     std::copy(pieces[i].triangles.begin(), pieces[i].triangles.end(), mesh.triangles.data() + triangles[i]);
   });
@@ -207,9 +207,9 @@ Mesh join(const Source& source, std::vector<Piece>& pieces) {
 
 Mesh read_obj(const Source& original) {
   std::string storage;
-  const Source source{with_unix_lines(original.bytes, storage), original.name, original.run};
+  const Source source{with_unix_lines(original.bytes, storage), original.name, original.context};
   std::vector<Piece> pieces = cut(source.bytes);
-  parallel_tasks(*source.run, pieces.size(), [&](std::size_t i) {
+  parallel_tasks(*source.context, pieces.size(), [&](std::size_t i) {
     try {
       PieceReader(source, pieces[i]).read();
     } catch (const UnusableInput&) {

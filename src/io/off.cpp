@@ -88,7 +88,7 @@ class OffReader {
   }
 
   void read_vertex(std::uint64_t i) {
-    if (i % (1 << 16) == 0) source_.run->throw_if_cancelled();
+    if (i % (1 << 16) == 0) source_.context->throw_if_cancelled();
     require_more("vertex", i);
     Vec3 v;
     for (int a = 0; a < 3; ++a) {
@@ -102,7 +102,7 @@ class OffReader {
   }
 
   void read_face(std::uint64_t i) {
-    if (i % (1 << 16) == 0) source_.run->throw_if_cancelled();
+    if (i % (1 << 16) == 0) source_.context->throw_if_cancelled();
     require_more("face", i);
     const std::uint64_t corners = read_count("the number of corners of the face");
     append_fan(mesh_.triangles, corners, [&] {
@@ -127,7 +127,7 @@ class OffReader {
 
 Mesh read_off(const Source& original) {
   std::string storage;
-  const Source source{with_unix_lines(original.bytes, storage), original.name, original.run};
+  const Source source{with_unix_lines(original.bytes, storage), original.name, original.context};
   return OffReader(source).read();
 }
 

@@ -49,7 +49,7 @@ class AsciiValues {
   }
   [[noreturn]] void refuse(std::string_view what) const { fail_at(source_, at_, what); }
   std::size_t left() const { return static_cast<std::size_t>(source_.end() - at_); }
-  static std::size_t least_size(Type) { return 1; }
+  static std::size_t min_size(Type) { return 1; }
 
  private:
   void skip_space() {
@@ -83,7 +83,7 @@ class BinaryValues {
   [[noreturn]] void refuse(std::string_view what) const { fail(source_, what); }
   std::size_t left() const { return static_cast<std::size_t>(source_.end() - at_); }
   bool swap() const { return swap_; }
-  static std::size_t least_size(Type type) { return size_of(type); }
+  static std::size_t min_size(Type type) { return size_of(type); }
 
   static double decode(Type type, const char* bytes, bool swap) {
     switch (type) {
@@ -154,7 +154,7 @@ class BodyReader {
   /// Counts are checked against the bytes that are left before anything is allocated.
   void check_size(const Element& element) const {
     std::uint64_t row = 0;
-    for (const Property& p : element.properties) row += Values::least_size(p.count_type.value_or(p.type));
+    for (const Property& p : element.properties) row += Values::min_size(p.count_type.value_or(p.type));
     if (row > 0 && element.count > values_.left() / row) {
       values_.refuse(fmt::format("announces {} elements '{}', but only {} bytes are left; the file is truncated",
                                  element.count, element.name, values_.left()));
@@ -243,7 +243,7 @@ class BodyReader {
     const std::size_t stride = place_of(element, element.properties.size());
     const bool swap = values_.swap();
     const bool plain = !swap && std::all_of(type.begin(), type.end(), [](Type t) { return t == Type::float32; });
-    parallel_for(*source_.run, vectors.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    parallel_for(*source_.context, vectors.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const char* row = rows + i * stride;
         if (plain) {
@@ -277,7 +277,7 @@ class BodyReader {
     mesh_.triangles.reserve(mesh_.triangles.size() + element.count);
     const bool strips = element.name == "tristrips";
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      if (i % (1 << 16) == 0) source_.run->throw_if_cancelled();
+      if (i % (1 << 16) == 0) source_.context->throw_if_cancelled();
       if constexpr (std::is_same_v<Values, BinaryValues>) {
         if (!strips && element.properties.size() == 1 && read_plain_triangle(p)) continue;
       }

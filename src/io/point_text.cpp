@@ -168,7 +168,7 @@ std::vector<Vec3> join(const Source& source, std::vector<Piece>& pieces, const M
   std::vector<std::size_t> first(pieces.size() + 1);
   for (std::size_t i = 0; i < pieces.size(); ++i) first[i + 1] = first[i] + member(pieces[i]).size();
   std::vector<Vec3> all(first.back());
-  parallel_tasks(*source.run, pieces.size(), [&](std::size_t i) {
+  parallel_tasks(*source.context, pieces.size(), [&](std::size_t i) {
     std::copy(member(pieces[i]).begin(), member(pieces[i]).end(), all.data() + first[i]);
     member(pieces[i]) = {};
   });
@@ -249,10 +249,10 @@ bool is_point_text(std::string_view bytes) {
 
 PointCloud read_point_text(const Source& original) {
   std::string storage;
-  const Source source{with_unix_lines(original.bytes, storage), original.name, original.run};
+  const Source source{with_unix_lines(original.bytes, storage), original.name, original.context};
   const Layout layout = find_layout(source);
   std::vector<Piece> pieces = cut(layout, source.end());
-  parallel_tasks(*source.run, pieces.size(), [&](std::size_t i) {
+  parallel_tasks(*source.context, pieces.size(), [&](std::size_t i) {
     try {
       read_piece(source, layout, pieces[i]);
     } catch (const UnusableInput&) {

@@ -38,7 +38,7 @@ std::string found_at(const Source& source, const char* where) {
 void require_finite(const Source& source, const std::vector<Vec3>& vertices) {
   constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   std::atomic<std::size_t> first{none};
-  parallel_for(*source.run, vertices.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(*source.context, vertices.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
     double sum = 0;  // x − x is 0 for finite x and NaN otherwise: one test per piece
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& v = vertices[i];

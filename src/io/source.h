@@ -19,7 +19,7 @@ inline constexpr std::uint64_t max_vertices = 0xffffffffu;
 struct Source {
   std::string_view bytes;
   std::string_view name;
-  Run* run = nullptr;
+  ExecutionContext* context = nullptr;
 
   const char* begin() const { return bytes.data(); }
   const char* end() const { return bytes.data() + bytes.size(); }

@@ -71,7 +71,7 @@ class AsciiReader {
   void begin_facet(std::string_view word) {
     if (in_facet_) fail_at(source_, word.data(), "the facet before it has no 'endfacet'");
     in_facet_ = true;
-    if (++facets_ % (1 << 16) == 0) source_.run->throw_if_cancelled();
+    if (++facets_ % (1 << 16) == 0) source_.context->throw_if_cancelled();
     p_ = std::min(next_line(p_, end_), find_outer());  // "normal" and its numbers, or words for numbers: not needed
   }
   /// Files without line ends exist; then the normal ends where the loop begins.
@@ -136,7 +136,7 @@ bool is_ascii_stl(std::string_view bytes) {
 Mesh read_stl(const Source& original) {
   if (is_exact_binary_stl(original.bytes) || !is_ascii_stl(original.bytes)) return read_binary(original);
   std::string storage;
-  const Source source{with_unix_lines(original.bytes, storage), original.name, original.run};
+  const Source source{with_unix_lines(original.bytes, storage), original.name, original.context};
   return AsciiReader(source).read();
 }
 

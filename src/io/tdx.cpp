@@ -52,8 +52,8 @@ Dexels parse_dexels(std::string_view bytes, std::string_view name) {
   return dexels;
 }
 
-Dexels read_dexels(const std::filesystem::path& path, Run& run) {
-  run.throw_if_cancelled();
+Dexels read_dexels(const std::filesystem::path& path, ExecutionContext& context) {
+  context.throw_if_cancelled();
   const FileBytes bytes = load_file(path);
   return parse_dexels(bytes.view(), name_of_input(path));
 }

@@ -44,7 +44,7 @@ class ModelParser {
 
   Model parse() {
     while (const auto tag = tags_.next()) {
-      if (++tags_seen_ % (1 << 16) == 0) source_.run->throw_if_cancelled();
+      if (++tags_seen_ % (1 << 16) == 0) source_.context->throw_if_cancelled();
       if (tag->opens) open(*tag);
       if (tag->closes) close(*tag);
     }
@@ -171,7 +171,7 @@ class PackageReader {
   std::string start_path() {
     if (const auto* rels = archive_.find("_rels/.rels")) {
       const std::string text = archive_.extract(*rels);
-      const Source part{text, source_.name, source_.run};
+      const Source part{text, source_.name, source_.context};
       XmlTags tags(part);
       while (const auto tag = tags.next()) {
         if (tag->name != "Relationship" || !tag->attribute("Type").value_or("").ends_with("/3dmodel")) continue;
@@ -193,7 +193,7 @@ class PackageReader {
     const std::string text = archive_.extract(*entry);
     budget_.add(text.size());
     const std::string name = fmt::format("{}: {}", source_.name, entry->name);
-    return models_.emplace(path, ModelParser({text, name, source_.run}).parse()).first->second;
+    return models_.emplace(path, ModelParser({text, name, source_.context}).parse()).first->second;
   }
 
   void append(const Mesh& part, const PartPlacement& placement) {

@@ -80,7 +80,7 @@ Mesh weld(const Source& source, std::size_t triangles, const Corner& corner) {
   std::array<Vec3, 3 * batch> points;
   std::array<std::uint64_t, 3 * batch> hashes;
   for (std::size_t first = 0; first < triangles; first += batch) {
-    if (first % (batch << 12) == 0) source.run->throw_if_cancelled();
+    if (first % (batch << 12) == 0) source.context->throw_if_cancelled();
     if (welder.size() > max_vertices - 3 * batch) fail(source, "has more than 4,294,967,295 vertices; split it");
     const std::size_t corners = 3 * std::min(batch, triangles - first);
     for (std::size_t i = 0; i < corners; ++i) {

@@ -67,9 +67,9 @@ bool names_open_file(const fs::path& path) {
 
 /// The name behind symbolic links, so that the file is replaced and the links stay. It need not exist.
 fs::path behind_links(fs::path path) {
-  constexpr int most_links = 40;  // as many as the kernel follows
+  constexpr int max_links = 40;  // as many as the kernel follows
   std::error_code error;
-  for (int i = 0; i < most_links && !names_open_file(path) && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
+  for (int i = 0; i < max_links && !names_open_file(path) && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
     const fs::path target = fs::read_symlink(path, error);
     if (error) break;
     path = target.is_absolute() ? target : path.parent_path() / target;

@@ -21,7 +21,7 @@ constexpr std::string_view local_mark("PK\3\4", 4), directory_mark("PK\1\2", 4),
 constexpr std::size_t local_size = 30, directory_size = 46, end_size = 22, end64_size = 56, locator_size = 20;
 constexpr std::uint32_t in_extra_field = 0xffffffff;
 /// Real 3MF packages unpack to less than 30 times their size; more is an attack on the memory.
-constexpr std::uint64_t most_growth = 200, free_growth = 1 << 20;
+constexpr std::uint64_t max_growth = 200, free_growth = 1 << 20;
 
 template <typename Number>
 Number field(std::string_view bytes, std::size_t at) {
@@ -109,10 +109,10 @@ std::string ZipArchive::extract(const Entry& entry) {
       entry.offset + local_size + field<std::uint16_t>(local, 26) + field<std::uint16_t>(local, 28);
   const std::string_view packed = slice(start, entry.packed_size);
   // Subtraction keeps the sum from overflowing, whatever size the directory claims.
-  const std::uint64_t allowed = free_growth + most_growth * source_.bytes.size();
+  const std::uint64_t allowed = free_growth + max_growth * source_.bytes.size();
   if (entry.size > allowed - std::min(allowed, unpacked_)) {
     refuse(fmt::format("would unpack to {} bytes, more than {} times the file; it is damaged or meant to do harm",
-                       entry.size, most_growth));
+                       entry.size, max_growth));
   }
   unpacked_ += entry.size;
   std::string bytes(entry.size, '\0');

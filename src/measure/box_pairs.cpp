@@ -27,12 +27,12 @@ void radix_pass(const std::vector<std::uint64_t>& keys, const std::vector<std::u
 
 }  // namespace
 
-BoxPairs::BoxPairs(const std::vector<Box>& boxes, const Run& run) {
+BoxPairs::BoxPairs(const std::vector<Box>& boxes, const ExecutionContext& context) {
   Box all;
   for (const Box& box : boxes)
     if (!box.empty()) all.add(box.lo), all.add(box.hi);
   sort_along_curve(boxes, all);
-  run.throw_if_cancelled();
+  context.throw_if_cancelled();
 
   order_.resize((order_.size() + width - 1) / width * width, 0);
   std::vector<Eight> lowest(order_.size() / width);

@@ -19,7 +19,7 @@ class BoxPairs {
   static constexpr std::size_t width = 8;
 
   /// Empty boxes take part in no pair. Cost: some 50 ns per box.
-  BoxPairs(const std::vector<Box>& boxes, const Run& run);
+  BoxPairs(const std::vector<Box>& boxes, const ExecutionContext& context);
 
   std::size_t groups() const { return order_.size() / width; }
 

@@ -36,7 +36,7 @@ Mesh edges_sharper_than(const Mesh& mesh, double angle) {
 
 }  // namespace
 
-CreaseDistance crease_distance(const Mesh& of, const Mesh& to, double step, Run& run) {
+CreaseDistance crease_distance(const Mesh& of, const Mesh& to, double step, ExecutionContext& context) {
   const Mesh from = edges_sharper_than(of, sharp), lines = edges_sharper_than(to, sharp_enough);
   CreaseDistance result;
   for (const Triangle& t : from.triangles) result.length += norm(from.vertices[t[1]] - from.vertices[t[0]]);
@@ -45,12 +45,12 @@ CreaseDistance crease_distance(const Mesh& of, const Mesh& to, double step, Run&
     result.largest = result.mean = std::numeric_limits<double>::infinity();
     return result;
   }
-  const SurfaceQuery query(lines, run);
+  const SurfaceQuery query(lines, context);
   struct Tally {
     double largest = 0, sum = 0;
   };
   std::vector<Tally> of_edge(from.triangles.size());  // the sum is an integral along the edge
-  parallel_for(run, of_edge.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, of_edge.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
       const Vec3 a = from.vertices[2 * e], along = from.vertices[2 * e + 1] - a;
       const int pieces = static_cast<int>(std::clamp(std::ceil(norm(along) / step), 1.0, 1e6));

@@ -14,7 +14,7 @@ struct CreaseDistance {
 /// From points along the edges of `of` whose two triangles turn by more than 40° to the nearest edge of `to` that turns
 /// by more than 20°. Edges of one triangle, or of three, are not sharp edges.
 /// @param step  distance between these points at most, model units
-CreaseDistance crease_distance(const Mesh& of, const Mesh& to, double step, Run& run);
+CreaseDistance crease_distance(const Mesh& of, const Mesh& to, double step, ExecutionContext& context);
 
 /// Mean length of the triangles' edges; those of two triangles count twice.
 double mean_edge_length(const Mesh& mesh);

@@ -82,9 +82,9 @@ double angle_between(const Vec3& a, const Vec3& b) {
 constexpr std::size_t piece = 4096;  // fixed, so that sums are the same for any number of threads
 
 template <typename Body>
-Tally sum_pieces(const Run& run, std::size_t count, const Body& body) {
+Tally sum_pieces(const ExecutionContext& context, std::size_t count, const Body& body) {
   std::vector<Tally> tallies((count + piece - 1) / piece);
-  parallel_tasks(run, tallies.size(),
+  parallel_tasks(context, tallies.size(),
                  [&](std::size_t i) { tallies[i] = body(i * piece, std::min((i + 1) * piece, count)); });
   Tally total;
   for (const Tally& t : tallies) total.add(t);
@@ -103,9 +103,10 @@ std::vector<Vec3> used_vertices(const Mesh& mesh) {
 }
 
 /// From the vertices and area samples of `from` to the surface of `to`.
-Tally one_sided(const Mesh& from, const Mesh& to, const SurfaceQuery& query, std::size_t samples, const Run& run) {
+Tally one_sided(const Mesh& from, const Mesh& to, const SurfaceQuery& query, std::size_t samples,
+                const ExecutionContext& context) {
   const std::vector<Vec3> vertices = used_vertices(from);
-  const Tally at_vertices = sum_pieces(run, vertices.size(), [&](std::size_t begin, std::size_t end) {
+  const Tally at_vertices = sum_pieces(context, vertices.size(), [&](std::size_t begin, std::size_t end) {
     Tally tally;
     Follower follower(query);
     for (std::size_t i = begin; i < end; ++i)
@@ -113,7 +114,7 @@ Tally one_sided(const Mesh& from, const Mesh& to, const SurfaceQuery& query, std
     return tally;
   });
   const AreaSampler sampler(from, samples);
-  Tally tally = sum_pieces(run, samples, [&](std::size_t begin, std::size_t end) {
+  Tally tally = sum_pieces(context, samples, [&](std::size_t begin, std::size_t end) {
     Tally t;
     Follower follower(query);
     for (std::size_t i = begin; i < end; ++i) {
@@ -134,15 +135,15 @@ Tally one_sided(const Mesh& from, const Mesh& to, const SurfaceQuery& query, std
 
 }  // namespace
 
-MeshDistance compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options, Run& run) {
+MeshDistance compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& options, ExecutionContext& context) {
   if (a.triangles.empty() || b.triangles.empty())
     throw InvalidInput("a mesh without triangles has no distance; give two meshes with at least one triangle each");
   if (options.samples < 1 || options.samples > 1'000'000'000)
     throw InvalidInput("the number of samples must lie between 1 and 1,000,000,000");
-  const SurfaceQuery query_a(a, run), query_b(b, run);
-  return with_threads(run, [&] {
-    const Tally from_a = one_sided(a, b, query_b, options.samples, run);
-    const Tally from_b = one_sided(b, a, query_a, options.samples, run);
+  const SurfaceQuery query_a(a, context), query_b(b, context);
+  return with_threads(context, [&] {
+    const Tally from_a = one_sided(a, b, query_b, options.samples, context);
+    const Tally from_b = one_sided(b, a, query_a, options.samples, context);
     const auto samples = static_cast<double>(options.samples);
     MeshDistance result;
     result.a_to_b_max = std::sqrt(from_a.largest_squared), result.b_to_a_max = std::sqrt(from_b.largest_squared);
@@ -151,8 +152,8 @@ MeshDistance compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& 
     result.normal_deviation_avg = from_a.angles / samples;
     result.reference_diagonal = b.bounds().diagonal();
     result.edge_length_avg = mean_edge_length(a);
-    const CreaseDistance creases = crease_distance(b, a, 0.1 * result.edge_length_avg, run);
-    result.crease_max = creases.largest, result.crease_avg = creases.mean, result.crease_length = creases.length;
+    const CreaseDistance features = crease_distance(b, a, 0.1 * result.edge_length_avg, context);
+    result.crease_max = features.largest, result.crease_avg = features.mean, result.crease_length = features.length;
     return result;
   });
 }

@@ -36,11 +36,11 @@ struct Sums {
 };
 
 /// In pieces of fixed size, merged in order: the same bits for any number of threads.
-Sums sum_triangles(const Mesh& mesh, const Run& run) {
+Sums sum_triangles(const Mesh& mesh, const ExecutionContext& context) {
   constexpr std::size_t piece = 4096;
   const Vec3 origin = mesh.vertices[mesh.triangles[0][0]];
   std::vector<Sums> pieces((mesh.triangles.size() + piece - 1) / piece);
-  parallel_tasks(run, pieces.size(), [&](std::size_t i) {
+  parallel_tasks(context, pieces.size(), [&](std::size_t i) {
     const std::size_t end = std::min((i + 1) * piece, mesh.triangles.size());
     for (std::size_t t = i * piece; t < end; ++t) pieces[i].add(mesh, t, origin);
   });
@@ -67,7 +67,7 @@ void put_topology(const Topology& topology, MeshQuality& q) {
     ++q.vertices;
     q.max_valence = std::max<std::size_t>(q.max_valence, v.valence);
     if (!v.on_boundary) ++interior, irregular += v.valence != 6;
-    q.non_manifold_vertices += v.fans > 1 || v.on_non_manifold_edge;
+    q.non_manifold_vertices += v.umbrellas > 1 || v.on_non_manifold_edge;
   }
   q.irregular_ratio = interior > 0 ? static_cast<double>(irregular) / static_cast<double>(interior) : 0;
   q.boundary_edges = topology.boundary, q.non_manifold_edges = topology.non_manifold;
@@ -81,7 +81,7 @@ void put_topology(const Topology& topology, MeshQuality& q) {
 
 }  // namespace
 
-MeshQuality measure_quality(const Mesh& mesh, Run& run) {
+MeshQuality measure_quality(const Mesh& mesh, ExecutionContext& context) {
   MeshQuality q;
   q.faces = mesh.triangles.size();
   q.bounds = mesh.bounds();
@@ -89,15 +89,15 @@ MeshQuality measure_quality(const Mesh& mesh, Run& run) {
     q.unused_vertices = mesh.vertices.size();
     return q;
   }
-  with_threads(run, [&] {
+  with_threads(context, [&] {
     Topology topology;
     Sums sums;
     // The two do not depend on each other.
-    parallel_tasks(run, 2, [&](std::size_t i) {
+    parallel_tasks(context, 2, [&](std::size_t i) {
       if (i == 0)
         topology = measure_topology(mesh);
       else
-        sums = sum_triangles(mesh, run);
+        sums = sum_triangles(mesh, context);
     });
     put_shapes(sums, q);
     put_topology(topology, q);

@@ -82,7 +82,7 @@ std::vector<VertexState> count_corners(const Mesh& mesh) {
       VertexState& state = states[t[k]];
       state.used = true;
       // A repeated vertex has one corner in a triangle.
-      if (std::find(t.begin(), t.begin() + k, t[k]) == t.begin() + k) ++state.fans;
+      if (std::find(t.begin(), t.begin() + k, t[k]) == t.begin() + k) ++state.umbrellas;
     }
   return states;
 }
@@ -102,7 +102,7 @@ void add_edge(const Mesh& mesh, std::uint32_t lower, const Side* begin, const Si
     if (begin[0].ascending == begin[1].ascending) ++topology.inconsistent;
     for (const std::uint32_t v : {lower, upper})
       if (corners.unite(corner_of(mesh, begin[0].face, v), corner_of(mesh, begin[1].face, v)))
-        --topology.vertices[v].fans;
+        --topology.vertices[v].umbrellas;
   }
   for (const Side* side = begin + 1; side != end; ++side)
     if (faces.unite(begin->face, side->face)) --topology.components;

@@ -11,8 +11,8 @@ namespace evenmesh {
 
 /// What is known of a vertex from the triangles and edges around it.
 struct VertexState {
-  std::uint32_t valence = 0;  ///< edges
-  std::uint32_t fans = 0;     ///< groups of its triangles, joined across edges of exactly two triangles
+  std::uint32_t valence = 0;    ///< edges
+  std::uint32_t umbrellas = 0;  ///< groups of its triangles, joined across edges of exactly two triangles
   bool used = false, on_boundary = false, on_non_manifold_edge = false;
 };
 

@@ -145,9 +145,9 @@ Corners rotated(const Corners& t, int k) {
 
 }  // namespace
 
-std::vector<std::uint8_t> projection_axes(const Mesh& mesh, const Run& run) {
+std::vector<std::uint8_t> projection_axes(const Mesh& mesh, const ExecutionContext& context) {
   std::vector<std::uint8_t> axes(mesh.triangles.size(), 3);
-  parallel_for(run, axes.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, axes.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto [a, b, c] = corners_of(mesh, i);
       const Vec3 n = area_normal(a, b, c);

@@ -12,7 +12,7 @@ namespace evenmesh {
 
 /// For each triangle the axis along which its projection is largest and surely not degenerate; 3 for degenerate
 /// triangles.
-std::vector<std::uint8_t> projection_axes(const Mesh& mesh, const Run& run);
+std::vector<std::uint8_t> projection_axes(const Mesh& mesh, const ExecutionContext& context);
 
 /// Whether triangles s and t intersect as self_intersections() counts it. Exact. Both must not be degenerate.
 /// @param axis  a projection axis of s

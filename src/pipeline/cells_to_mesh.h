@@ -16,20 +16,20 @@ struct ConnectedCells {
   std::vector<Triangle> triangles;    ///< of labels
   bool two_manifold = false;
   std::vector<std::pair<std::uint32_t, Vec3>> anchors{};  ///< shell: cells at the rim, and their place on it
-  Creases creases{};
-  CreaseSeeds crease_seeds{};  ///< the first seeds, which have not moved
-  BallIndex balls{{}};         ///< united with the solid where the grid could not tell its topology
+  FeatureCurves features{};
+  FeatureSeeds feature_seeds{};  ///< the first seeds, which have not moved
+  BallIndex balls{{}};           ///< united with the solid where the grid could not tell its topology
 };
 
 /// What the options mean for balancing seeds.
-BalanceOptions balance_options(const MeshOptions& options);
+RelaxOptions relax_options(const MeshOptions& options);
 
 /// Of connect_fragments: the shares of edges by the cycle that they come from, for the report and the log.
-void report_cycles(const LabelComplex& complex, Report& report, Run& run);
+void report_cycles(const LabelComplex& complex, Report& report, ExecutionContext& context);
 
 /// Balances about `count` seeds on `samples` (dust is removed from them) and connects their cells; the report gets
 /// counts, energies and notices. The vertex count is met by starting with fewer seeds where thin walls split cells.
-ConnectedCells balance_and_connect(SampleSet& samples, std::size_t count, const MeshOptions& options, Stages& stages,
-                                   Report& report, Run& run);
+ConnectedCells relax_and_connect(SampleSet& samples, std::size_t count, const MeshOptions& options, StageTimer& timer,
+                                 Report& report, ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -45,7 +45,7 @@ void check(const MeshOptions& o) {
     throw InvalidInput("the shell's thickness must lie in [1, 20] voxels");
   if (o.max_cycle < 3 || o.max_cycle > 8) throw InvalidInput("the longest cycle must lie in [3, 8] edges");
   if (o.iterations && *o.iterations > 10'000) throw InvalidInput("the iterations must lie in [0, 10000]");
-  if (o.crease_angle && !(*o.crease_angle > 0 && *o.crease_angle < 180))
+  if (o.feature_angle && !(*o.feature_angle > 0 && *o.feature_angle < 180))
     throw InvalidInput("the angle of sharp edges must lie in (0, 180) degrees");
   if (!(o.tolerance > 0 && o.tolerance < 1)) throw InvalidInput("the tolerance must lie in (0, 1)");
   if (o.bounds && !(is_finite(o.bounds->lo) && is_finite(o.bounds->hi)) && !o.bounds->empty())
@@ -86,41 +86,41 @@ class RegularizedProjector : public Projector {
   const BallIndex& balls_;
 };
 
-constexpr double least_solidity = 0.6;  ///< of meshes with an inside to speak of
+constexpr double min_solidity = 0.6;  ///< of meshes with an inside to speak of
 
 /// Single precision holds areas and energies, products of up to four lengths, of models between these sizes.
 constexpr double smallest_model = 1e-8, largest_model = 1e10;
 
 class Job {
  public:
-  Job(const Shape& shape, const MeshOptions& options, Run& run, Artifacts& kept)
+  Job(const Shape& shape, const MeshOptions& options, ExecutionContext& context, Artifacts& kept)
       : shape_(shape),
         options_(options),
-        run_(run),
+        context_(context),
         kept_(kept),
-        stages_(run, report_),
-        by_shell_(wants_shell(shape, options, run)) {}
+        timer_(context, report_),
+        by_shell_(wants_shell(shape, options, context)) {}
 
   MeshResult result() {
     ConnectedCells& cells = cells_;
     find_shape_bounds();
     cells = by_shell_ && !options_.wrap ? cells_of_sheets() : cells_of_solid();
-    Mesh mesh = stages_.stage("place", 0.1, [&] { return place(cells); });
-    stages_.stage("refine", 0.05, [&] { refine(mesh, cells.labels); });
-    stages_.stage("measure", 0.05, [&] { finish(mesh, cells.two_manifold); });
-    run_.report("done", 1);
+    Mesh mesh = timer_.stage("place", 0.1, [&] { return place(cells); });
+    timer_.stage("refine", 0.05, [&] { refine(mesh, cells.labels); });
+    timer_.stage("measure", 0.05, [&] { finish(mesh, cells.two_manifold); });
+    context_.report("done", 1);
     result_.mesh = std::move(mesh);
     return std::move(result_);
   }
 
  private:
-  static bool wants_shell(const Shape& shape, const MeshOptions& options, Run& run) {
+  static bool wants_shell(const Shape& shape, const MeshOptions& options, ExecutionContext& context) {
     if (options.method == Method::raster && (options.wrap || shape.points()))
       throw InvalidInput("rays need a solid: points and wraps are meshed by the shell method");
     if (options.method == Method::shell || options.wrap || shape.points()) return true;
     if (options.method != Method::automatic) return false;
-    if (const Sampler* sampler = shape.sampler()) return sampler->solidity(shape.bounds, run) < least_solidity;
-    return shape.mesh() && solidity(*shape.mesh(), run) < least_solidity;
+    if (const Sampler* sampler = shape.sampler()) return sampler->solidity(shape.bounds, context) < min_solidity;
+    return shape.mesh() && solidity(*shape.mesh(), context) < min_solidity;
   }
 
   void find_shape_bounds() {
@@ -130,7 +130,7 @@ class Job {
       if (const Mesh* mesh = shape_.mesh(); mesh == nullptr || !contains(*options_.bounds, shape_.bounds))
         shape_.bounds = *options_.bounds;
     } else if (shape_.bounds.empty()) {
-      shape_.bounds = stages_.stage("sample", 0, [&] { return find_bounds(shape_); });
+      shape_.bounds = timer_.stage("sample", 0, [&] { return find_bounds(shape_); });
     }
     if (shape_.compound()) tighten_bounds();
     const double longest = shape_.bounds.longest_side();
@@ -141,9 +141,9 @@ class Job {
 
   /// Booleans leave less than their operands' boxes.
   void tighten_bounds() {
-    stages_.stage("sample", 0.02, [&] {
+    timer_.stage("sample", 0.02, [&] {
       constexpr std::size_t coarse = 96;
-      const SampleSet samples = sample_shape(shape_, make_grid(shape_.bounds, coarse), run_);
+      const SampleSet samples = sample_shape(shape_, make_grid(shape_.bounds, coarse), context_);
       Box box;
       for (const SampleBlock& block : samples.blocks)
         for (std::uint32_t s = block.begin; s < block.end; ++s)
@@ -155,34 +155,34 @@ class Job {
 
   ConnectedCells cells_of_sheets() {
     kept_.dexels.reset();
-    ShellSampling sampling = sample_by_shell(shape_, options_, stages_, report_, kept_, run_);
-    ConnectedCells cells = connect_shell(sampling, options_, stages_, report_, run_);
+    ShellSampling sampling = sample_by_shell(shape_, options_, timer_, report_, kept_, context_);
+    ConnectedCells cells = connect_shell(sampling, options_, timer_, report_, context_);
     samples_ = std::move(sampling.on_surface);
     return cells;
   }
   ConnectedCells cells_of_solid() {
     if (options_.wrap) {
-      samples_ = sample_wrapping(shape_, options_, stages_, report_, kept_, run_);
+      samples_ = sample_wrapping(shape_, options_, timer_, report_, kept_, context_);
     } else {
       kept_.shell.reset();
       kept_.shell_cut.reset();
       sample();
     }
     if (kept_.dexels) kept_.dexels = dexels_of(samples_);
-    return balance_and_connect(samples_, report_.seeds_asked, options_, stages_, report_, run_);
+    return relax_and_connect(samples_, report_.seeds_asked, options_, timer_, report_, context_);
   }
 
   void sample() {
     const Box& bounds = shape_.bounds;
     const SurfaceScale scale =
-        stages_.stage("sample", 0.02, [&] { return scout_scale(shape_, options_.resolution.value_or(0), run_); });
+        timer_.stage("sample", 0.02, [&] { return presample(shape_, options_.resolution.value_or(0), context_); });
     Fineness fineness = choose_fineness(scale, bounds, options_, report_.notices);
     sample_at(fineness.resolution);
     const double h = samples_.grid.spacing, expected = scale.area * scale.samples_per_area / (h * h);
     const double surprise = static_cast<double>(samples_.size()) / expected;
     if (!options_.resolution && (surprise > 2 || surprise < 0.6)) sample_again(fineness);
     weigh(fineness);
-    if (scale.specks > 0 || surprise > 2) drop_specks(fineness.vertices);
+    if (scale.small_components > 0 || surprise > 2) drop_small(fineness.vertices);
     report_.seeds_asked = fineness.vertices;
     report_.resolution = fineness.resolution;
     report_.spacing = samples_.grid.spacing;
@@ -199,10 +199,10 @@ class Job {
   }
 
   void sample_at(std::size_t resolution) {
-    samples_ =
-        stages_.stage("sample", 0.1, [&] { return sample_shape(shape_, make_grid(shape_.bounds, resolution), run_); });
+    samples_ = timer_.stage("sample", 0.1,
+                            [&] { return sample_shape(shape_, make_grid(shape_.bounds, resolution), context_); });
     if (options_.fill_cavities)
-      report_.filled_cavities = stages_.stage("sample", 0, [&] { return fill_cavities(samples_, run_); });
+      report_.filled_cavities = timer_.stage("sample", 0, [&] { return fill_cavities(samples_, context_); });
   }
 
   /// Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
@@ -221,7 +221,7 @@ class Job {
   void weigh(Fineness& fineness) {
     if (!options_.density) return;
     const auto weigh = [&] {
-      return stages_.stage("sample", 0, [&] { return weigh_by_density(samples_, options_.density, run_); });
+      return timer_.stage("sample", 0, [&] { return weigh_by_density(samples_, options_.density, context_); });
     };
     const double finer = std::sqrt(std::min(16.0, weigh()));
     if (options_.resolution || finer < 1.1) return;
@@ -231,9 +231,10 @@ class Job {
   }
 
   /// Thousands of pieces smaller than a cell would keep seeds busy in vain.
-  void drop_specks(std::size_t vertices) {
-    stages_.stage("sample", 0, [&] {
-      report_.dropped_components = drop_dust(samples_, samples_.total_area / static_cast<double>(vertices), run_);
+  void drop_small(std::size_t vertices) {
+    timer_.stage("sample", 0, [&] {
+      report_.dropped_components =
+          drop_small_components(samples_, samples_.total_area / static_cast<double>(vertices), context_);
     });
     if (samples_.size() < vertices)
       throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
@@ -253,8 +254,9 @@ class Job {
 
   /// Vertices from cells, onto the surface; labels without triangles are left out.
   Mesh place(ConnectedCells& cells) {
-    const std::vector<CellShape> shapes = cell_shapes(samples_, cells.labels, cells.seeds, run_);
-    if (!by_shell_ || options_.wrap) report_.dropped_components += remove_pillows(cells.triangles, cells.seeds.size());
+    const std::vector<CellShape> shapes = cell_shapes(samples_, cells.labels, cells.seeds, context_);
+    if (!by_shell_ || options_.wrap)
+      report_.dropped_components += remove_two_triangle_spheres(cells.triangles, cells.seeds.size());
     auto& index = vertex_of_label_;
     index.assign(cells.seeds.size(), 0xffffffffu);
     Mesh mesh;
@@ -271,15 +273,15 @@ class Job {
 
     separate(mesh);
     edge_ = edge_length_of(samples_.total_area, static_cast<double>(std::max<std::size_t>(4, mesh.vertices.size())));
-    hold_creases(mesh, cells);
+    constrain_features(mesh, cells);
     if (options_.placement != Placement::centroid && !options_.wrap) {
       projector_ = projector();
       if (!cells.balls.balls().empty())
         projector_ = std::make_unique<RegularizedProjector>(std::move(projector_), cells.balls);
       if (projector_)
-        parallel_for(run_, mesh.vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
+        parallel_for(context_, mesh.vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
           for (std::size_t v = begin; v < end; ++v)
-            if (!holds_.vertex(static_cast<std::uint32_t>(v)))
+            if (!constraints_.vertex(static_cast<std::uint32_t>(v)))
               mesh.vertices[v] = projector_->project(mesh.vertices[v], 0.5 * edge_);
         });
     }
@@ -291,43 +293,46 @@ class Job {
   /// Whether single points of the shape are dear or cannot be had at all.
   bool by_samples() const {
     const Field* field = shape_.field();
-    return shape_.compound() || shape_.sampler() || (field && wants_batches(*field) && field->has_gradient());
+    return shape_.compound() || shape_.sampler() || (field && prefers_batches(*field) && field->has_gradient());
   }
 
   /// Onto the shape itself or onto the samples.
   std::unique_ptr<Projector> projector() const {
-    return by_samples() ? make_projector(samples_) : make_projector(shape_, shape_.bounds, run_);
+    return by_samples() ? make_projector(samples_) : make_projector(shape_, shape_.bounds, context_);
   }
 
   /// Vertices of seeds on creases go there, except where a ball has covered the crease.
-  void hold_creases(Mesh& mesh, ConnectedCells& cells) {
-    const CreaseSeeds& seeds = cells.crease_seeds;
-    if (seeds.places.empty() && cells.creases.tips.empty()) return;
-    holds_.chain.assign(mesh.vertices.size(), Holds::free);
+  void constrain_features(Mesh& mesh, ConnectedCells& cells) {
+    const FeatureSeeds& seeds = cells.feature_seeds;
+    if (seeds.places.empty() && cells.features.apexes.empty()) return;
+    constraints_.curve.assign(mesh.vertices.size(), VertexConstraints::free);
     for (std::size_t l = 0; l < seeds.places.size(); ++l) {
       const Vec3& place = seeds.places[l];
       if (const std::uint32_t v = vertex_of_label_[l]; v != 0xffffffffu && cells.balls.outside(place) == place)
-        holds_.chain[v] = l < seeds.corners ? Holds::corner : seeds.chain_of(l), mesh.vertices[v] = place;
+        constraints_.curve[v] = l < seeds.corners ? VertexConstraints::corner : seeds.curve_of(l),
+        mesh.vertices[v] = place;
     }
     for (const auto& [a, b] : seeds.edges) {
       const auto [v, w] = std::minmax(vertex_of_label_[a], vertex_of_label_[b]);
-      if (w != 0xffffffffu) holds_.edges.push_back({v, w});
+      if (w != 0xffffffffu) constraints_.edges.push_back({v, w});
     }
-    std::sort(holds_.edges.begin(), holds_.edges.end());
-    holds_.creases = std::move(cells.creases);
-    for (const Vec3& tip : holds_.creases.tips)
-      if (cells.balls.outside(tip) == tip) hold_tip(mesh, tip);
-    holds_.most_bulge = crease_deviation * edge_;
+    std::sort(constraints_.edges.begin(), constraints_.edges.end());
+    constraints_.features = std::move(cells.features);
+    for (const Vec3& apex : constraints_.features.apexes)
+      if (cells.balls.outside(apex) == apex) constrain_apex(mesh, apex);
+    constraints_.max_chordal_deviation = feature_deviation * edge_;
   }
 
   /// The nearest vertex goes to the tip of a cone: seeds in balance leave it not far from there.
-  void hold_tip(Mesh& mesh, const Vec3& tip) {
-    constexpr double most_moved = 1;  // edges
+  void constrain_apex(Mesh& mesh, const Vec3& apex) {
+    constexpr double max_moved = 1;  // edges
     std::size_t nearest = 0;
     for (std::size_t v = 1; v < mesh.vertices.size(); ++v)
-      if (squared_norm(mesh.vertices[v] - tip) < squared_norm(mesh.vertices[nearest] - tip)) nearest = v;
-    if (holds_.chain[nearest] != Holds::free || norm(mesh.vertices[nearest] - tip) > most_moved * edge_) return;
-    holds_.chain[nearest] = Holds::corner, mesh.vertices[nearest] = tip;
+      if (squared_norm(mesh.vertices[v] - apex) < squared_norm(mesh.vertices[nearest] - apex)) nearest = v;
+    if (constraints_.curve[nearest] != VertexConstraints::free ||
+        norm(mesh.vertices[nearest] - apex) > max_moved * edge_)
+      return;
+    constraints_.curve[nearest] = VertexConstraints::corner, mesh.vertices[nearest] = apex;
   }
 
   /// Open surfaces and fragments: vertices in which several fans of triangles meet are split, and the rim is marked.
@@ -336,7 +341,7 @@ class Job {
     const bool closed = !by_shell_ || options_.wrap;
     if (closed && options_.connect != Connect::fragments) return;
     std::vector<std::uint32_t> source;
-    report_.cuts += separate_fans(mesh, source);
+    report_.cuts += separate_umbrellas(mesh, source);
     const HalfEdges edges(mesh.triangles, mesh.vertices.size());
     for (std::size_t h = 0; h < 3 * mesh.triangles.size(); ++h)
       if (edges.opposite(h) == HalfEdges::none)
@@ -344,51 +349,51 @@ class Job {
   }
 
   void refine(Mesh& mesh, std::vector<std::uint32_t>& labels) {
-    if (!measure_quality(mesh, run_).two_manifold()) return;
-    flip_to_delaunay(mesh, holds_);
-    polish(mesh, projector_.get(), run_, holds_);
-    flip_to_delaunay(mesh, holds_);
-    release_creases(mesh);
+    if (!measure_quality(mesh, context_).two_manifold()) return;
+    flip_to_delaunay(mesh, constraints_);
+    polish(mesh, projector_.get(), context_, constraints_);
+    flip_to_delaunay(mesh, constraints_);
+    release_features(mesh);
     if (options_.placement == Placement::quadric) {
       for (std::uint32_t& l : labels) l = vertex_of_label_[l];
       fit_extremes(mesh, samples_, labels, projector_.get(), by_shell_ && !options_.wrap ? 3 * report_.spacing : 0,
-                   run_, holds_);
+                   context_, constraints_);
     }
-    land(mesh);
+    project(mesh);
     // Files hold single precision: what matters is that the mesh written does not intersect itself.
     const auto find = [&](Mesh m) {
       for (Vec3& v : m.vertices)
         for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(v[a]);
-      return self_intersections(m, run_);
+      return self_intersections(m, context_);
     };
-    if (!holds_.chain.empty())
-      for (const auto& [s, t] : find(mesh)) holds_.release(mesh, std::array{s, t});
-    report_.self_intersections = untangle(mesh, projector_.get(), find, run_, holds_);
+    if (!constraints_.curve.empty())
+      for (const auto& [s, t] : find(mesh)) constraints_.release(mesh, std::array{s, t});
+    report_.self_intersections = untangle(mesh, projector_.get(), find, context_, constraints_);
   }
 
   /// What was projected onto the samples only goes the rest of the way.
-  void land(Mesh& mesh) const {
+  void project(Mesh& mesh) const {
     if (!projector_ || shape_.field() == nullptr || !by_samples()) return;
     std::vector<Vec3> places = mesh.vertices;
     step_onto(places, *shape_.field(), shape_.bounds, 0.25 * samples_.grid.spacing);
     for (std::uint32_t v = 0; v < places.size(); ++v)
-      if (!holds_.vertex(v) && cells_.balls.outside(places[v]) == places[v]) mesh.vertices[v] = places[v];
+      if (!constraints_.vertex(v) && cells_.balls.outside(places[v]) == places[v]) mesh.vertices[v] = places[v];
   }
 
   /// Where creases are so near to each other, or meet at so acute an angle, that triangles between them are slivers,
   /// regular triangles come first.
-  void release_creases(Mesh& mesh) {
+  void release_features(Mesh& mesh) {
     constexpr double sliver = 0.35;  // angles of 12°
-    if (holds_.chain.empty()) return;
+    if (constraints_.curve.empty()) return;
     const auto slivers = triangles_below(mesh, sliver);
     if (slivers.empty()) return;
-    holds_.release(mesh, slivers);
-    polish(mesh, projector_.get(), run_, holds_);
-    flip_to_delaunay(mesh, holds_);
+    constraints_.release(mesh, slivers);
+    polish(mesh, projector_.get(), context_, constraints_);
+    flip_to_delaunay(mesh, constraints_);
   }
 
   void finish(const Mesh& mesh, bool two_manifold) {
-    report_.quality = measure_quality(mesh, run_);
+    report_.quality = measure_quality(mesh, context_);
     const MeshQuality& q = report_.quality;
     report_.seeds = q.vertices;
     report_.alpha = static_cast<double>(report_.samples) / static_cast<double>(std::max<std::size_t>(1, q.vertices));
@@ -435,16 +440,16 @@ class Job {
 
   Shape shape_;
   const MeshOptions& options_;
-  Run& run_;
+  ExecutionContext& context_;
   Artifacts& kept_;
   MeshResult result_;
   Report& report_ = result_.report;
-  Stages stages_;
+  StageTimer timer_;
   bool by_shell_;
   SampleSet samples_;
   ConnectedCells cells_;
   std::unique_ptr<Projector> projector_;
-  Holds holds_;
+  VertexConstraints constraints_;
   std::vector<char> at_rim_;                    ///< by vertex of a label
   std::vector<std::uint32_t> vertex_of_label_;  ///< 0xffffffff: none, its piece of surface is dust
   double edge_ = 0;
@@ -452,10 +457,10 @@ class Job {
 
 }  // namespace
 
-MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, Run& run, Artifacts* kept) {
+MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, ExecutionContext& context, Artifacts* kept) {
   check(options);
   Artifacts none;
-  return with_threads(run, [&] { return Job(shape, options, run, kept ? *kept : none).result(); });
+  return with_threads(context, [&] { return Job(shape, options, context, kept ? *kept : none).result(); });
 }
 
 }  // namespace evenmesh

@@ -13,11 +13,11 @@
 namespace evenmesh {
 namespace {
 
-constexpr double wanted_alpha = 100, least_alpha = 50;
-constexpr std::size_t most_cells = 8192;
-constexpr std::size_t scouting_cells = 96;
-constexpr std::size_t most_specks = 16;     ///< of a surface that is not taken for a fractal
-constexpr double least_cells_across = 1.2;  ///< thinner parts may lie between the grid points
+constexpr double wanted_alpha = 100, min_alpha = 50;
+constexpr std::size_t max_cells = 8192;
+constexpr std::size_t presample_cells = 96;
+constexpr std::size_t max_small_components = 16;  ///< of a surface that is not taken for a fractal
+constexpr double min_cells_across = 1.2;          ///< thinner parts may lie between the grid points
 
 struct Pairs {
   std::vector<std::pair<float, float>> curvature, thickness;  ///< (value, area)
@@ -65,9 +65,9 @@ double vertices_of(double area, double edge_length) {
   return 2 * area / (std::numbers::sqrt3 * edge_length * edge_length);
 }
 
-SurfaceScale measure_scale(const SampleSet& coarse, Run& run) {
+SurfaceScale measure_scale(const SampleSet& coarse, ExecutionContext& context) {
   std::vector<Pairs> of_chunk((coarse.blocks.size() + 63) / 64);
-  parallel_tasks(run, of_chunk.size(), [&](std::size_t c) {
+  parallel_tasks(context, of_chunk.size(), [&](std::size_t c) {
     for (std::size_t b = 64 * c; b < std::min(coarse.blocks.size(), 64 * (c + 1)); ++b)
       compare_samples(coarse, coarse.blocks[b], of_chunk[c]);
   });
@@ -87,24 +87,24 @@ SurfaceScale measure_scale(const SampleSet& coarse, Run& run) {
 
 namespace {
 
-std::size_t count_specks(const SampleSet& samples, Run& run) {
-  const double speck = 8 * samples.grid.spacing * samples.grid.spacing;
-  const auto parts = surface_parts(samples, run);
+std::size_t count_small_components(const SampleSet& samples, ExecutionContext& context) {
+  const double small_component = 8 * samples.grid.spacing * samples.grid.spacing;
+  const auto parts = surface_components(samples, context);
   return static_cast<std::size_t>(
-      std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < speck; }));
+      std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < small_component; }));
 }
 
 }  // namespace
 
-SurfaceScale scout_scale(const Shape& shape, std::size_t finest, Run& run) {
-  finest = std::max(finest, 4 * scouting_cells);
-  for (std::size_t cells = scouting_cells;; cells *= 2) {
+SurfaceScale presample(const Shape& shape, std::size_t finest, ExecutionContext& context) {
+  finest = std::max(finest, 4 * presample_cells);
+  for (std::size_t cells = presample_cells;; cells *= 2) {
     const bool last = 2 * cells > finest;
     try {
-      const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, cells), run);
-      SurfaceScale scale = measure_scale(samples, run);
-      scale.specks = count_specks(samples, run);
-      if (last || scale.thickness > least_cells_across * samples.grid.spacing) return scale;
+      const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, cells), context);
+      SurfaceScale scale = measure_scale(samples, context);
+      scale.small_components = count_small_components(samples, context);
+      if (last || scale.thickness > min_cells_across * samples.grid.spacing) return scale;
     } catch (const UnusableInput&) {
       if (last) throw;
     }
@@ -147,23 +147,23 @@ Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const Mes
     resolution = resolution_for(wanted_alpha * 1.02 * vertices);
     // Thin parts need grid points inside, as long as that costs no more than four times the samples. Where there is
     // dust, thin parts are thin at every scale.
-    if (std::isfinite(scale.thickness) && scale.thickness > 0 && scale.specks <= most_specks)
+    if (std::isfinite(scale.thickness) && scale.thickness > 0 && scale.small_components <= max_small_components)
       resolution = std::clamp(2.5 * longest / scale.thickness, resolution, 2 * resolution);
     resolution = std::ceil(std::max(resolution, 24.0));
   }
-  if (resolution > most_cells) {
+  if (resolution > max_cells) {
     notices.push_back(
         {false, fmt::format("the grid ends at {} cells along the longest side: fewer than {} samples per seed",
-                            most_cells, wanted_alpha)});
-    resolution = most_cells;
+                            max_cells, wanted_alpha)});
+    resolution = max_cells;
   }
-  const double most_vertices = std::max(4.0, std::floor(samples_at(resolution) / least_alpha));
-  if (vertices > most_vertices) {
+  const double max_vertices = std::max(4.0, std::floor(samples_at(resolution) / min_alpha));
+  if (vertices > max_vertices) {
     notices.push_back(
         {false,
          fmt::format("{:.0f} vertices would have fewer than {} samples each at resolution {:.0f}; meshing with {:.0f}",
-                     vertices, least_alpha, resolution, most_vertices)});
-    vertices = most_vertices;
+                     vertices, min_alpha, resolution, max_vertices)});
+    vertices = max_vertices;
   }
   return {static_cast<std::size_t>(vertices), static_cast<std::size_t>(resolution)};
 }

@@ -19,26 +19,27 @@ namespace {
 
 constexpr int topology_rounds = 12;
 constexpr int patience = 3;  ///< fragments: rounds without a fifth fewer defects
-constexpr std::size_t settling_evaluations = 5;
+constexpr std::size_t relaxing_evaluations = 5;
 constexpr double shell_effort =
     1.7;  ///< of balancing, a small part of the time here: Q 0.005 higher for 10 % more of it
 
 class ShellCells {
  public:
-  ShellCells(const ShellSampling& sampling, const MeshOptions& options, Stages& stages, Report& report, Run& run)
+  ShellCells(const ShellSampling& sampling, const MeshOptions& options, StageTimer& timer, Report& report,
+             ExecutionContext& context)
       : sampling_(sampling),
         samples_(sampling.samples),
         options_(options),
-        stages_(stages),
+        timer_(timer),
         report_(report),
-        run_(run),
-        evaluator_(sampling.samples, run) {}
+        context_(context),
+        evaluator_(sampling.samples, context) {}
 
   ConnectedCells result() {
-    stages_.stage("balance", 0.5, [&] {
-      BalanceOptions balance = balance_options(options_);
+    timer_.stage("balance", 0.5, [&] {
+      RelaxOptions balance = relax_options(options_);
       balance.effort *= shell_effort;
-      BalanceResult result = balance_seeds(evaluator_, report_.seeds_asked, balance, run_);
+      RelaxResult result = relax_seeds(evaluator_, report_.seeds_asked, balance, context_);
       seeds_ = std::move(result.seeds);
       report_.energies.insert(report_.energies.end(), result.ratios.begin(), result.ratios.end());
       report_.energy_ratio = result.energy_ratio;
@@ -52,13 +53,13 @@ class ShellCells {
       idle = 10 * found.size() < 8 * fewest ? 0 : idle + 1;
       fewest = std::min(fewest, found.size());
       if (options_.connect == Connect::fragments && idle > patience) break;
-      mend(found);
+      repair_topology(found);
     }
     if (options_.topology == TopologyRule::simplify)
       report_.notices.push_back({false, "sheets have no inside that balls could be added to: their topology was kept"});
     ConnectedCells cells;
     cells.two_manifold = complex_.defects.empty();
-    report_cycles(complex_, report_, run_);
+    report_cycles(complex_, report_, context_);
     cells.anchors = anchors();
     cells.seeds = std::move(seeds_), cells.labels = std::move(labels_);
     cells.triangles = std::move(complex_.triangles);
@@ -67,7 +68,7 @@ class ShellCells {
 
  private:
   void connect() {
-    stages_.stage("connect", 0.1, [&] {
+    timer_.stage("connect", 0.1, [&] {
       evaluator_.nearest(seeds_, labels_);
       if (options_.connect == Connect::fragments) {
         connect_as_fragments();
@@ -75,16 +76,16 @@ class ShellCells {
       }
       std::vector<std::uint32_t> all(sampling_.surface.samples.size(), no_label);
       for (std::size_t i = 0; i < labels_.size(); ++i) all[sampling_.in_surface[i]] = labels_[i];
-      if (options_.connect == Connect::flood) flood_labels(sampling_.surface.samples, all, seeds_, run_);
-      complex_ = connect_labels(sampling_.surface.samples, all, seeds_, run_);
+      if (options_.connect == Connect::flood) flood_labels(sampling_.surface.samples, all, seeds_, context_);
+      complex_ = connect_labels(sampling_.surface.samples, all, seeds_, context_);
       for (std::size_t i = 0; i < labels_.size(); ++i) labels_[i] = all[sampling_.in_surface[i]];
-      for (const CellPiece& piece : complex_.pieces) seeds_.push_back(piece.centroid);
+      for (const CellComponent& piece : complex_.pieces) seeds_.push_back(piece.centroid);
     });
   }
 
   /// A boundary away from the rim of the sheets is a hole: a cycle that could not be filled.
   void connect_as_fragments() {
-    complex_ = connect_fragments(samples_, seeds_, {.max_cycle = options_.max_cycle, .open = true}, run_).complex;
+    complex_ = connect_fragments(samples_, seeds_, {.max_cycle = options_.max_cycle, .open = true}, context_).complex;
     std::vector<char> at_rim(seeds_.size(), 0);
     for (std::size_t i = 0; i < labels_.size(); ++i)
       if (sampling_.sheets.border[sampling_.in_surface[i]]) at_rim[labels_[i]] = 1;
@@ -106,22 +107,22 @@ class ShellCells {
     return list;
   }
 
-  void mend(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& found) {
+  void repair_topology(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& found) {
     const std::size_t given = seeds_.size() - complex_.pieces.size();
-    const Mending mending = stages_.stage("connect", 0, [&] {
+    const TopologyRepair repair = timer_.stage("connect", 0, [&] {
       const double edge = edge_length_of(samples_.total_area, static_cast<double>(seeds_.size()));
-      return plan_mending(samples_, labels_, seeds_, found, {}, BallIndex({}),
-                          {.edge = edge, .given = given, .seeds_only = true});
+      return plan_topology_repair(samples_, labels_, seeds_, found, {}, BallIndex({}),
+                                  {.edge = edge, .given = given, .seeds_only = true});
     });
-    run_.log(fmt::format("mend: {} defects, {} seeds", found.size(), seeds_.size()));
+    context_.log(fmt::format("mend: {} defects, {} seeds", found.size(), seeds_.size()));
     seeds_.resize(given);
-    seeds_.insert(seeds_.end(), mending.seeds.begin(), mending.seeds.end());
-    report_.inserted_seeds += mending.seeds.size();
+    seeds_.insert(seeds_.end(), repair.seeds.begin(), repair.seeds.end());
+    report_.inserted_seeds += repair.seeds.size();
     // Seeds closer than a few samples would all be neighbours to fragments.
     if (options_.connect == Connect::fragments)
-      stages_.stage("balance", 0, [&] {
-        optimize(evaluator_, seeds_, {options_.optimizer == Optimizer::lloyd, settling_evaluations, options_.tolerance},
-                 run_);
+      timer_.stage("balance", 0, [&] {
+        optimize(evaluator_, seeds_, {options_.optimizer == Optimizer::lloyd, relaxing_evaluations, options_.tolerance},
+                 context_);
       });
     connect();
   }
@@ -153,9 +154,9 @@ class ShellCells {
   const ShellSampling& sampling_;
   const SampleSet& samples_;
   const MeshOptions& options_;
-  Stages& stages_;
+  StageTimer& timer_;
   Report& report_;
-  Run& run_;
+  ExecutionContext& context_;
   CellEvaluator evaluator_;
   std::vector<Vec3> seeds_;
   std::vector<std::uint32_t> labels_;
@@ -164,9 +165,9 @@ class ShellCells {
 
 }  // namespace
 
-ConnectedCells connect_shell(const ShellSampling& sampling, const MeshOptions& options, Stages& stages, Report& report,
-                             Run& run) {
-  return ShellCells(sampling, options, stages, report, run).result();
+ConnectedCells connect_shell(const ShellSampling& sampling, const MeshOptions& options, StageTimer& timer,
+                             Report& report, ExecutionContext& context) {
+  return ShellCells(sampling, options, timer, report, context).result();
 }
 
 namespace {
@@ -201,7 +202,7 @@ bool detach_crowded(Mesh& mesh, std::vector<std::uint32_t>& source) {
 
 }  // namespace
 
-std::size_t separate_fans(Mesh& mesh, std::vector<std::uint32_t>& source) {
+std::size_t separate_umbrellas(Mesh& mesh, std::vector<std::uint32_t>& source) {
   const std::size_t given = mesh.vertices.size();
   source.resize(given);
   std::iota(source.begin(), source.end(), 0u);
@@ -209,10 +210,10 @@ std::size_t separate_fans(Mesh& mesh, std::vector<std::uint32_t>& source) {
     const std::size_t before = mesh.vertices.size();
     const HalfEdges edges(mesh.triangles, before);
     for (std::uint32_t v = 0; v < before; ++v) {
-      std::uint32_t copy = v, last_fan = 0;
-      edges.visit_fans(v, [&](std::uint32_t h, std::uint32_t fan) {
-        if (fan != last_fan) {
-          last_fan = fan, copy = static_cast<std::uint32_t>(mesh.vertices.size());
+      std::uint32_t copy = v, last_umbrella = 0;
+      edges.visit_umbrellas(v, [&](std::uint32_t h, std::uint32_t umbrella) {
+        if (umbrella != last_umbrella) {
+          last_umbrella = umbrella, copy = static_cast<std::uint32_t>(mesh.vertices.size());
           mesh.vertices.push_back(mesh.vertices[v]), source.push_back(source[v]);
         }
         mesh.triangles[h / 3][h % 3] = copy;

@@ -19,10 +19,10 @@
 namespace evenmesh {
 namespace {
 
-constexpr double wanted_alpha = 100, least_alpha = 50;
+constexpr double wanted_alpha = 100, min_alpha = 50;
 constexpr double samples_per_voxel_area = 1.5;  ///< Σ |n_a|, the mean over all directions
 constexpr std::size_t coarse = 128;             ///< resolution at which areas are estimated
-constexpr unsigned default_thickness = 2, most_thickness = 20;
+constexpr unsigned default_thickness = 2, max_thickness = 20;
 
 double area_of(const Mesh& mesh) {
   double area = 0;
@@ -51,19 +51,19 @@ struct ShellPlan {
 };
 
 /// Area by triangles, points or a coarse sampling.
-double estimated_area(const Shape& shape, double spacing, Run& run) {
+double estimated_area(const Shape& shape, double spacing, ExecutionContext& context) {
   if (const Mesh* mesh = shape.mesh()) return area_of(*mesh);
   if (const PointCloud* points = shape.points())
     return 0.75 * static_cast<double>(points->points.size()) * spacing * spacing;
   if (const Sampler* sampler = shape.sampler())
-    return sampler->sample_surface(make_grid(shape.bounds, coarse), shape.bounds, run).total_area;
-  return scout_scale(shape, 0, run).area;
+    return sampler->sample_surface(make_grid(shape.bounds, coarse), shape.bounds, context).total_area;
+  return presample(shape, 0, context).area;
 }
 
-ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& report, Run& run) {
+ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& report, ExecutionContext& context) {
   const PointCloud* points = shape.points();
-  const double spacing = points ? point_spacing(*points, run) : 0;
-  const double area = estimated_area(shape, spacing, run), longest = shape.bounds.longest_side();
+  const double spacing = points ? point_spacing(*points, context) : 0;
+  const double area = estimated_area(shape, spacing, context), longest = shape.bounds.longest_side();
   if (!(area > 0) || !(longest > 0) || (points && on_a_line(points->points)))
     throw UnusableInput("the input has no area: all its triangles or points lie on a line or in a point");
   ShellPlan plan;
@@ -85,10 +85,10 @@ ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& rep
   if (points) {
     // Random points leave gaps of up to about three times their spacing.
     const double voxels = 1.6 * spacing * resolution / longest;
-    if (!options.resolution && voxels > most_thickness) resolution = std::floor(resolution * most_thickness / voxels);
+    if (!options.resolution && voxels > max_thickness) resolution = std::floor(resolution * max_thickness / voxels);
     plan.spacing = spacing;
-    plan.bridge = options.thickness.value_or(static_cast<unsigned>(std::clamp(
-        std::ceil(1.6 * spacing * resolution / longest), double(default_thickness), double(most_thickness))));
+    plan.bridge = options.thickness.value_or(static_cast<unsigned>(
+        std::clamp(std::ceil(1.6 * spacing * resolution / longest), double(default_thickness), double(max_thickness))));
     plan.thickness = default_thickness;
     report.notices.push_back(
         {false, fmt::format("points about {:.3g} apart: gaps of up to {:.3g} ({} voxels) are bridged", spacing,
@@ -98,22 +98,23 @@ ShellPlan plan_shell(const Shape& shape, const MeshOptions& options, Report& rep
   return plan;
 }
 
-SiteVoxels voxelize(const Shape& shape, const ShellPlan& plan, Run& run) {
+SiteVoxels voxelize(const Shape& shape, const ShellPlan& plan, ExecutionContext& context) {
   const unsigned margin = std::max(plan.thickness, plan.bridge) + plan.thickness + 2;
   if (const Sampler* sampler = shape.sampler())
-    return voxelize_samples(sampler->sample_surface(make_grid(shape.bounds, plan.resolution), shape.bounds, run),
-                            margin, run);
+    return voxelize_samples(sampler->sample_surface(make_grid(shape.bounds, plan.resolution), shape.bounds, context),
+                            margin, context);
   if (shape.compound())
-    return voxelize_samples(sample_shape(shape, make_grid(shape.bounds, plan.resolution), run), margin, run);
+    return voxelize_samples(sample_shape(shape, make_grid(shape.bounds, plan.resolution), context), margin, context);
   const VoxelGrid grid = make_voxel_grid(shape.bounds, plan.resolution, margin);
-  if (const Mesh* mesh = shape.mesh()) return voxelize_mesh(*mesh, grid, run);
+  if (const Mesh* mesh = shape.mesh()) return voxelize_mesh(*mesh, grid, context);
   if (const PointCloud* points = shape.points()) {
-    SiteVoxels sparse = voxelize_points(points->points, points->normals, grid, run);
+    SiteVoxels sparse = voxelize_points(points->points, points->normals, grid, context);
     if (sparse.size() == 0) return sparse;
-    if (sparse.normal.empty()) estimate_normals(sparse, 2 * plan.bridge, run);
-    return bridge_points(sparse, build_shell(sparse, plan.bridge, run), plan.spacing, !points->normals.empty(), run);
+    if (sparse.normal.empty()) estimate_normals(sparse, 2 * plan.bridge, context);
+    return moving_least_squares(sparse, build_narrow_band(sparse, plan.bridge, context), plan.spacing,
+                                !points->normals.empty(), context);
   }
-  return voxelize_field(*shape.field(), grid, shape.bounds, run);
+  return voxelize_field(*shape.field(), grid, shape.bounds, context);
 }
 
 }  // namespace
@@ -128,7 +129,8 @@ void report_sampling(const ShellPlan& plan, std::size_t samples, const SiteVoxel
 }
 
 /// The sites around the outer border of a shell.
-SiteVoxels outer_border(const ShellSurface& surface, const Sheets& outer, const VoxelGrid& grid, Run& run) {
+SiteVoxels outer_border(const BandSurface& surface, const Sheets& outer, const VoxelGrid& grid,
+                        ExecutionContext& context) {
   const SampleSet& samples = surface.samples;
   std::vector<Vec3> points, normals;
   for (const SampleBlock& block : samples.blocks)
@@ -137,13 +139,13 @@ SiteVoxels outer_border(const ShellSurface& surface, const Sheets& outer, const 
       points.push_back(samples.block_center(block) + Vec3{samples.x[i], samples.y[i], samples.z[i]});
       normals.push_back(unpack_normal(samples.normal[i]));
     }
-  return voxelize_points(points, normals, grid, run);
+  return voxelize_points(points, normals, grid, context);
 }
 
 /// The inner side of a shell, turned around: the border of what the shell encloses.
-SampleSet enclosed_by(const ShellSurface& surface, Run& run) {
+SampleSet enclosed_by(const BandSurface& surface, ExecutionContext& context) {
   SampleSet samples = surface.samples;
-  const SurfaceParts parts = surface_parts(samples, run);
+  const SurfaceComponents parts = surface_components(samples, context);
   std::vector<double> behind(parts.area.size(), 0);
   for (std::uint32_t i = 0; i < samples.size(); ++i)
     if (surface.facing[i] < 0) behind[parts.part[i]] += samples.area[i];
@@ -163,7 +165,7 @@ void sample_well(ShellPlan plan, bool may_refine, const Sample& sample) {
   if (!may_refine || static_cast<double>(samples) > 0.6 * wanted) return;
   const double finer = std::min(3.0, std::sqrt(wanted / static_cast<double>(std::max<std::size_t>(1, samples))));
   plan.resolution = std::min<std::size_t>(8192, static_cast<std::size_t>(finer * static_cast<double>(plan.resolution)));
-  if (plan.bridge > 0) plan.bridge = std::min(most_thickness, static_cast<unsigned>(std::ceil(finer * plan.bridge)));
+  if (plan.bridge > 0) plan.bridge = std::min(max_thickness, static_cast<unsigned>(std::ceil(finer * plan.bridge)));
   sample(plan);
 }
 
@@ -201,7 +203,7 @@ Notice merge_notice(const FilledGap& narrowest, const Report& report) {
 }
 
 /// Fills in kept.shell and kept.shell_cut as far as asked for.
-void keep_shell(const Shell& shell, const Box& bounds, Artifacts& kept) {
+void keep_shell(const NarrowBand& shell, const Box& bounds, Artifacts& kept) {
   if (!kept.shell && !kept.shell_cut) return;
   const VoxelGrid& grid = shell.grid();
   const SparseVolume empty{.name = "distance",
@@ -231,29 +233,29 @@ void keep_shell(const Shell& shell, const Box& bounds, Artifacts& kept) {
   }
 }
 
-ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& stages, Report& report, Artifacts& kept,
-                            std::optional<FilledGap>& narrowest, Run& run) {
-  const SiteVoxels sites = stages.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, run); });
+ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, StageTimer& timer, Report& report,
+                            Artifacts& kept, std::optional<FilledGap>& narrowest, ExecutionContext& context) {
+  const SiteVoxels sites = timer.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, context); });
   if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
   ShellSampling sampling;
   std::vector<FilledGap> gaps;
-  stages.stage("shell", 0.1, [&] {
-    const Shell shell = build_shell(sites, plan.thickness, run);
+  timer.stage("shell", 0.1, [&] {
+    const NarrowBand shell = build_narrow_band(sites, plan.thickness, context);
     report.shell_voxels = shell.size();
     keep_shell(shell, shape.bounds, kept);
-    sampling.surface = shell_surface(shell, sites, run);
-    gaps = filled_gaps(shell, sites, run);
+    sampling.surface = band_surface(shell, sites, context);
+    gaps = filled_gaps(shell, sites, context);
   });
-  stages.stage("sheets", 0.1, [&] {
+  timer.stage("sheets", 0.1, [&] {
     // Less is not worth a triangle; of points, what noise makes is larger.
     const double cell = 0.5 * sampling.surface.samples.total_area / static_cast<double>(plan.vertices);
-    const double least_area = (shape.points() ? 10 : 1) * cell;
-    sampling.sheets = choose_sheets(sampling.surface, sites, least_area, run);
+    const double min_area = (shape.points() ? 10 : 1) * cell;
+    sampling.sheets = choose_sheets(sampling.surface, sites, min_area, context);
     for (std::uint32_t i = 0; i < sampling.sheets.chosen.size(); ++i)
       if (sampling.sheets.chosen[i]) sampling.in_surface.push_back(i);
     sampling.samples = sampling.surface.samples;
     keep_samples(sampling.samples, [&](std::uint32_t i) { return sampling.sheets.chosen[i] != 0; });
-    sampling.on_surface = drawn_onto_surface(sampling.samples, sampling.in_surface, sampling.surface, sites, run);
+    sampling.on_surface = drawn_onto_surface(sampling.samples, sampling.in_surface, sampling.surface, sites, context);
   });
   if (sampling.samples.size() == 0)
     throw UnusableInput("no piece of the surface is large enough for this fineness: ask for more vertices");
@@ -264,17 +266,17 @@ ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, Stages& s
   return sampling;
 }
 
-SampleSet sample_enclosed(const Shape& shape, const ShellPlan& plan, Stages& stages, Report& report, Artifacts& kept,
-                          Run& run) {
-  const SiteVoxels sites = stages.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, run); });
+SampleSet sample_enclosed(const Shape& shape, const ShellPlan& plan, StageTimer& timer, Report& report, Artifacts& kept,
+                          ExecutionContext& context) {
+  const SiteVoxels sites = timer.stage("voxelize", 0.05, [&] { return voxelize(shape, plan, context); });
   if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
-  SampleSet samples = stages.stage("shell", 0.1, [&] {
-    const Shell shell = build_shell(sites, plan.thickness, run);
+  SampleSet samples = timer.stage("shell", 0.1, [&] {
+    const NarrowBand shell = build_narrow_band(sites, plan.thickness, context);
     report.shell_voxels = shell.size();
     keep_shell(shell, shape.bounds, kept);
-    const ShellSurface surface = shell_surface(shell, sites, run);
-    const SiteVoxels border = outer_border(surface, outer_sheets(surface, run), sites.grid, run);
-    return enclosed_by(shell_surface(build_shell(border, plan.thickness - 1, run), border, run), run);
+    const BandSurface surface = band_surface(shell, sites, context);
+    const SiteVoxels border = outer_border(surface, outer_sheets(surface, context), sites.grid, context);
+    return enclosed_by(band_surface(build_narrow_band(border, plan.thickness - 1, context), border, context), context);
   });
   if (samples.size() == 0) throw UnusableInput("the surface is too small for its grid: raise the resolution");
   report_sampling(plan, samples.size(), sites, report);
@@ -288,27 +290,27 @@ std::size_t enough_for(double densest, std::size_t samples) {
 
 /// Fewer seeds when the samples cannot feed as many.
 void limit_seeds(Report& report) {
-  const double most = std::max(4.0, std::floor(static_cast<double>(report.samples) / least_alpha));
+  const double most = std::max(4.0, std::floor(static_cast<double>(report.samples) / min_alpha));
   if (static_cast<double>(report.seeds_asked) <= most) return;
   report.notices.push_back(
       {false, fmt::format("{} vertices would have fewer than {} samples each at resolution {}; meshing with {:.0f}",
-                          report.seeds_asked, least_alpha, report.resolution, most)});
+                          report.seeds_asked, min_alpha, report.resolution, most)});
   report.seeds_asked = static_cast<std::size_t>(most);
 }
 
 }  // namespace
 
-ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report,
-                              Artifacts& kept, Run& run) {
-  const ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
+ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, StageTimer& timer, Report& report,
+                              Artifacts& kept, ExecutionContext& context) {
+  const ShellPlan plan = timer.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, context); });
   ShellSampling sampling;
   std::optional<FilledGap> narrowest;
   sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
     sampling = {};  // frees the memory first
-    sampling = sample_sheets(shape, p, stages, report, kept, narrowest, run);
+    sampling = sample_sheets(shape, p, timer, report, kept, narrowest, context);
     if (!options.density) return sampling.samples.size();
-    weigh_by_density(sampling.on_surface, options.density, run);
-    return enough_for(weigh_by_density(sampling.samples, options.density, run), sampling.samples.size());
+    weigh_by_density(sampling.on_surface, options.density, context);
+    return enough_for(weigh_by_density(sampling.samples, options.density, context), sampling.samples.size());
   });
   limit_seeds(report);
   if (narrowest && !shape.points()) report.notices.push_back(merge_notice(*narrowest, report));
@@ -318,17 +320,17 @@ ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, St
   return sampling;
 }
 
-SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, Stages& stages, Report& report,
-                          Artifacts& kept, Run& run) {
-  ShellPlan plan = stages.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, run); });
+SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, StageTimer& timer, Report& report,
+                          Artifacts& kept, ExecutionContext& context) {
+  ShellPlan plan = timer.stage("voxelize", 0.02, [&] { return plan_shell(shape, options, report, context); });
   plan.thickness = std::max(plan.thickness, 2u);
   if (plan.bridge > 0) plan.bridge = std::max(plan.bridge, plan.thickness);
   SampleSet samples;
   sample_well(plan, !options.resolution, [&](const ShellPlan& p) {
     samples = {};
-    samples = sample_enclosed(shape, p, stages, report, kept, run);
+    samples = sample_enclosed(shape, p, timer, report, kept, context);
     if (!options.density) return samples.size();
-    return enough_for(weigh_by_density(samples, options.density, run), samples.size());
+    return enough_for(weigh_by_density(samples, options.density, context), samples.size());
   });
   limit_seeds(report);
   report.notices.push_back({false, fmt::format("the wrap lies about {:.3g} outside of the surface, and closes what is "

@@ -9,27 +9,27 @@
 namespace evenmesh {
 
 /// Times the stages of a run and reports their progress. A stage's weight is its usual share of the run.
-class Stages {
+class StageTimer {
  public:
-  Stages(Run& run, Report& report) : run_(run), report_(report) {}
+  StageTimer(ExecutionContext& context, Report& report) : context_(context), report_(report) {}
 
   template <typename Work>
   auto stage(const std::string& name, double weight, const Work& work) {
-    run_.report(name, done_);
+    context_.report(name, done_);
     const Timer timer(*this, name, weight);
     return work();
   }
 
  private:
   struct Timer {
-    Stages& stages;
+    StageTimer& timer;
     const std::string& name;
     double weight;
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-    Timer(Stages& s, const std::string& n, double w) : stages(s), name(n), weight(w) {}
+    Timer(StageTimer& s, const std::string& n, double w) : timer(s), name(n), weight(w) {}
     ~Timer() {
-      stages.add(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-      stages.done_ = std::min(0.99, stages.done_ + weight);
+      timer.add(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      timer.done_ = std::min(0.99, timer.done_ + weight);
     }
   };
   void add(const std::string& name, double seconds) {
@@ -41,7 +41,7 @@ class Stages {
     report_.seconds.push_back({name, seconds});
   }
 
-  Run& run_;
+  ExecutionContext& context_;
   Report& report_;
   double done_ = 0;
 };

@@ -9,14 +9,14 @@
 namespace evenmesh {
 namespace {
 
-constexpr double worth_fitting = 0.15;           ///< of the edge length
-constexpr double least_score = 0.913;            ///< Q ≥ 0.639, angles ≥ 34.2°
-constexpr double least_cosine_at_creases = 0.7;  ///< of a triangle's turn: not from one side of a crease to the other
-constexpr double most_lift = 0.2;                ///< of the edge length
-constexpr double among_the_worst = 0.8;          ///< of the largest deviation: what a round looks at
-constexpr int most_rounds = 16;
-constexpr int most_rounds_inexact = 4;  ///< on samples off the surface: later rounds only cost quality
-constexpr int most_shakes = 2;          ///< rounds around the worst where nothing helps there
+constexpr double worth_fitting = 0.15;         ///< of the edge length
+constexpr double min_score = 0.913;            ///< Q ≥ 0.639, angles ≥ 34.2°
+constexpr double min_cosine_at_creases = 0.7;  ///< of a triangle's turn: not from one side of a crease to the other
+constexpr double max_lift = 0.2;               ///< of the edge length
+constexpr double among_the_worst = 0.8;        ///< of the largest deviation: what a round looks at
+constexpr int max_rounds = 16;
+constexpr int max_rounds_inexact = 4;  ///< on samples off the surface: later rounds only cost quality
+constexpr int max_perturbations = 2;   ///< rounds around the worst where nothing helps there
 constexpr std::size_t samples_per_cell = 20;
 
 /// Samples of every vertex' cell: some, or all where it matters.
@@ -24,12 +24,12 @@ class CellSamples {
  public:
   /// @param projector  brings samples onto the surface within `error`; null: they lie on it
   CellSamples(const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, std::size_t vertices,
-              const Projector* projector, double error, Run& run)
+              const Projector* projector, double error, ExecutionContext& context)
       : samples_(samples),
         vertex_of_sample_(vertex_of_sample),
         projector_(projector),
         error_(error),
-        run_(run),
+        context_(context),
         start_(vertices + 1, 0),
         list_(vertices, 0) {
     const std::size_t stride =
@@ -57,7 +57,7 @@ class CellSamples {
       list_[v] = static_cast<std::uint32_t>(lists_.size() + 1), lists_.emplace_back();
     constexpr std::size_t piece = 1024;
     std::vector<std::vector<std::pair<std::uint32_t, Vec3>>> found((samples_.blocks.size() + piece - 1) / piece);
-    parallel_tasks(run_, found.size(), [&](std::size_t p) {
+    parallel_tasks(context_, found.size(), [&](std::size_t p) {
       for (std::size_t b = p * piece; b < std::min(samples_.blocks.size(), (p + 1) * piece); ++b)
         for (std::size_t i = samples_.blocks[b].begin; i < samples_.blocks[b].end; ++i)
           if (const std::uint32_t v = vertex_of_sample_[i]; v < list_.size() && list_[v] > 0)
@@ -75,7 +75,7 @@ class CellSamples {
 
   void correct(std::vector<Vec3>& points) const {
     if (projector_ == nullptr) return;
-    parallel_for(run_, points.size(), 64, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context_, points.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) points[i] = projector_->project(points[i], error_);
     });
   }
@@ -84,7 +84,7 @@ class CellSamples {
   std::span<const std::uint32_t> vertex_of_sample_;
   const Projector* projector_;
   double error_;
-  Run& run_;
+  ExecutionContext& context_;
   std::vector<std::size_t> start_;
   std::vector<Vec3> points_;
   std::vector<std::uint32_t> list_;  ///< by vertex: 1 + index into lists_, 0 = some samples have to do
@@ -94,8 +94,8 @@ class CellSamples {
 /// The mesh, and how far each cell's samples lie from it.
 class Fit {
  public:
-  Fit(Mesh& m, const CellSamples& c, const Projector* p, const Holds& h)
-      : mesh(m), cells(c), projector(p), holds(h), rings(m) {
+  Fit(Mesh& m, const CellSamples& c, const Projector* p, const VertexConstraints& h)
+      : mesh(m), cells(c), projector(p), constraints(h), rings(m) {
     deviation.assign(m.vertices.size(), 0), stale.assign(m.vertices.size(), 1), hopeless.assign(m.vertices.size(), 0);
   }
 
@@ -109,8 +109,8 @@ class Fit {
     return worst;
   }
   /// Of the vertices whose surroundings changed since the last call; all of them at first.
-  void measure_deviations(const Run& run) {
-    parallel_for(run, deviation.size(), 256, [&](std::size_t begin, std::size_t end) {
+  void measure_deviations(const ExecutionContext& context) {
+    parallel_for(context, deviation.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
         if (stale[v]) deviation[v] = measured_deviation(static_cast<std::uint32_t>(v)), stale[v] = hopeless[v] = 0;
     });
@@ -127,10 +127,10 @@ class Fit {
   }
   /// Vertices around the worst, which are stuck: when something gives way there, there is hope again for those.
   std::vector<std::uint32_t> around_the_stuck() {
-    constexpr std::size_t most_stuck = 6;
+    constexpr std::size_t max_stuck = 6;
     std::vector<std::uint32_t> stuck(deviation.size());
     for (std::uint32_t v = 0; v < stuck.size(); ++v) stuck[v] = v;
-    const auto end = stuck.begin() + static_cast<std::ptrdiff_t>(std::min(most_stuck, stuck.size()));
+    const auto end = stuck.begin() + static_cast<std::ptrdiff_t>(std::min(max_stuck, stuck.size()));
     std::partial_sort(stuck.begin(), end, stuck.end(), [&](auto a, auto b) {
       return deviation[a] != deviation[b] ? deviation[a] > deviation[b] : a < b;
     });
@@ -174,7 +174,7 @@ class Fit {
   Mesh& mesh;
   const CellSamples& cells;
   const Projector* projector;
-  const Holds& holds;
+  const VertexConstraints& constraints;
   const VertexRings rings;
   std::vector<double> deviation;  ///< squared, by vertex
   std::vector<char> stale;        ///< deviation may be wrong
@@ -198,7 +198,7 @@ class Attempt {
   bool reach() {
     if (fit_.cells.of(v_).empty()) return false;
     std::vector<std::uint32_t> movers = fit_.vertices_around(v_, 1);
-    std::erase_if(movers, [&](std::uint32_t w) { return fit_.holds.vertex(w); });
+    std::erase_if(movers, [&](std::uint32_t w) { return fit_.constraints.vertex(w); });
     std::sort(movers.begin(), movers.end(), [&](auto p, auto q) {
       const double dp = squared_norm(mesh_.vertices[p] - tip_), dq = squared_norm(mesh_.vertices[q] - tip_);
       return dp != dq ? dp < dq : p < q;
@@ -222,7 +222,7 @@ class Attempt {
     }
     const Triangle corners = mesh_.triangles[nearest];
     for (const std::uint32_t c : corners)
-      if (fit_.holds.vertex(c)) return false;
+      if (fit_.constraints.vertex(c)) return false;
     const double edge = rings_.edge_length(v_);
     region_.clear();
     for (const std::uint32_t c : corners)
@@ -232,7 +232,7 @@ class Attempt {
     remember(region_);
     for (const double share : {0.5, 0.35, 0.2}) {
       Vec3 step = share * (tip_ - foot);
-      if (norm(step) > most_lift * edge) step *= most_lift * edge / norm(step);
+      if (norm(step) > max_lift * edge) step *= max_lift * edge / norm(step);
       for (const std::uint32_t c : corners) mesh_.vertices[c] += step;
       if (keep_or_undo()) return true;
     }
@@ -259,7 +259,7 @@ class Attempt {
   /// Positions, and the triangles around the region as they are now.
   void remember(std::span<const std::uint32_t> region) {
     positions_.clear(), triangles_.clear(), normals_.clear();
-    worst_before_ = 0, floor_ = least_score;
+    worst_before_ = 0, floor_ = min_score;
     for (const std::uint32_t w : region) {
       positions_.push_back(mesh_.vertices[w]);
       worst_before_ = std::max(worst_before_, fit_.deviation[w]);
@@ -279,7 +279,7 @@ class Attempt {
     return false;
   }
   bool triangles_are_good() const {
-    const double least = fit_.holds.chain.empty() ? 0 : least_cosine_at_creases;
+    const double least = fit_.constraints.curve.empty() ? 0 : min_cosine_at_creases;
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       const Triangle& t = mesh_.triangles[triangles_[i]];
       if (rings_.score(t) < floor_ || dot(rings_.normal_of(t), normals_[i]) <= least) return false;
@@ -303,7 +303,7 @@ class Attempt {
 
   /// Half way to the mean of the neighbours, along the surface, if that makes the worst triangle around w better.
   bool give_way(std::uint32_t w) {
-    if (rings_.on_boundary(w) || fit_.holds.vertex(w)) return false;
+    if (rings_.on_boundary(w) || fit_.constraints.vertex(w)) return false;
     Vec3& position = mesh_.vertices[w];
     const Vec3 original = position;
     rings_.normals(w, ring_normals_);
@@ -352,27 +352,28 @@ std::vector<std::uint32_t> take_independent(const Fit& fit, std::vector<std::uin
 }  // namespace
 
 std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
-                         const Projector* projector, double sample_error, Run& run, const Holds& holds) {
+                         const Projector* projector, double sample_error, ExecutionContext& context,
+                         const VertexConstraints& constraints) {
   CellSamples cells(samples, vertex_of_sample, mesh.vertices.size(), sample_error > 0 ? projector : nullptr,
-                    sample_error, run);
-  Fit fit(mesh, cells, projector, holds);
-  fit.measure_deviations(run);
+                    sample_error, context);
+  Fit fit(mesh, cells, projector, constraints);
+  fit.measure_deviations(context);
   const auto far = fit.far_vertices(0);
   cells.take_all_of(far);
   for (const std::uint32_t v : far) fit.stale[v] = 1;
   std::vector<char> taken(mesh.vertices.size());
   std::size_t moves = 0;
   int shakes = 0;
-  bool shake = false;
-  const int rounds = sample_error > 0 ? most_rounds_inexact : most_rounds;
+  bool perturb = false;
+  const int rounds = sample_error > 0 ? max_rounds_inexact : max_rounds;
   for (int round = 0; round < rounds; ++round) {
-    fit.measure_deviations(run);
-    std::vector<std::uint32_t> worst = shake ? fit.around_the_stuck() : fit.far_vertices(among_the_worst);
+    fit.measure_deviations(context);
+    std::vector<std::uint32_t> worst = perturb ? fit.around_the_stuck() : fit.far_vertices(among_the_worst);
     const std::size_t before = moves;
     while (!worst.empty()) {
       const auto group = take_independent(fit, worst, taken);
       std::vector<char> moved(group.size(), 0);
-      parallel_tasks(run, group.size(), [&](std::size_t i) {
+      parallel_tasks(context, group.size(), [&](std::size_t i) {
         Attempt attempt(fit, group[i]);
         moved[i] = attempt.reach() || attempt.lift();
         fit.hopeless[group[i]] = !moved[i];
@@ -380,11 +381,11 @@ std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const s
       moves += static_cast<std::size_t>(std::count(moved.begin(), moved.end(), 1));
     }
     if (moves > before)
-      shake = false;
-    else if (shake || shakes == most_shakes)
+      perturb = false;
+    else if (perturb || shakes == max_perturbations)
       break;
     else
-      shake = true, ++shakes;
+      perturb = true, ++shakes;
   }
   return moves;
 }

@@ -24,6 +24,7 @@ namespace evenmesh {
 /// Guarantee: same bits for any number of threads. Cost: about 30 ns per sample, and a millisecond for every place
 /// tried. Returns the number of places that came nearer.
 std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
-                         const Projector* projector, double sample_error, Run& run, const Holds& holds = {});
+                         const Projector* projector, double sample_error, ExecutionContext& context,
+                         const VertexConstraints& constraints = {});
 
 }  // namespace evenmesh

@@ -14,7 +14,8 @@ double cotangent_at(const Vec3& apex, const Vec3& a, const Vec3& b) {
 
 class Flipper {
  public:
-  Flipper(Mesh& mesh, const Holds& holds) : mesh_(mesh), holds_(holds), opposite_(3 * mesh.triangles.size()) {
+  Flipper(Mesh& mesh, const VertexConstraints& constraints)
+      : mesh_(mesh), constraints_(constraints), opposite_(3 * mesh.triangles.size()) {
     const HalfEdges edges(mesh.triangles, mesh.vertices.size());
     for (std::size_t h = 0; h < opposite_.size(); ++h) opposite_[h] = edges.opposite(h);
   }
@@ -45,7 +46,7 @@ class Flipper {
     const std::uint32_t o = opposite_[h];
     if (o == HalfEdges::none) return false;
     const std::uint32_t a = start(h), b = start(o), c = apex(h), d = apex(o);
-    if (c == d || holds_.edge(a, b)) return false;
+    if (c == d || constraints_.edge(a, b)) return false;
     const Vec3 &pa = position(a), &pb = position(b), &pc = position(c), &pd = position(d);
     if (cotangent_at(pc, pa, pb) + cotangent_at(pd, pa, pb) >= -1e-9) return false;
     const Vec3 cross1 = cross(pb - pa, pc - pa), cross2 = cross(pa - pb, pd - pb);
@@ -105,14 +106,14 @@ class Flipper {
   }
 
   Mesh& mesh_;
-  const Holds& holds_;
+  const VertexConstraints& constraints_;
   std::vector<std::uint32_t> opposite_;
 };
 
 }  // namespace
 
-std::size_t flip_to_delaunay(Mesh& mesh, const Holds& holds) {
-  return Flipper(mesh, holds).run();
+std::size_t flip_to_delaunay(Mesh& mesh, const VertexConstraints& constraints) {
+  return Flipper(mesh, constraints).run();
 }
 
 }  // namespace evenmesh

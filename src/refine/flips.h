@@ -13,6 +13,6 @@ namespace evenmesh {
 ///
 /// Guarantee: stays a closed two-manifold with the same vertices. Returns the number of flips. Cost: O(triangles).
 /// @pre  closed, oriented, two-manifold
-std::size_t flip_to_delaunay(Mesh& mesh, const Holds& holds = {});
+std::size_t flip_to_delaunay(Mesh& mesh, const VertexConstraints& constraints = {});
 
 }  // namespace evenmesh

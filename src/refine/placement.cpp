@@ -69,10 +69,10 @@ CellShape solve(const Quadric& q, const Vec3& seed) {
 }  // namespace
 
 std::vector<CellShape> cell_shapes(const SampleSet& samples, std::span<const std::uint32_t> labels,
-                                   std::span<const Vec3> seeds, Run& run) {
+                                   std::span<const Vec3> seeds, ExecutionContext& context) {
   constexpr std::size_t chunk = 256;
   std::vector<std::vector<Entry>> entries((samples.blocks.size() + chunk - 1) / chunk);
-  parallel_tasks(run, entries.size(), [&](std::size_t c) {
+  parallel_tasks(context, entries.size(), [&](std::size_t c) {
     for (std::size_t b = c * chunk; b < std::min(samples.blocks.size(), (c + 1) * chunk); ++b)
       collect_block(samples, samples.blocks[b], labels, seeds, entries[c]);
   });
@@ -80,7 +80,7 @@ std::vector<CellShape> cell_shapes(const SampleSet& samples, std::span<const std
   for (const auto& list : entries)
     for (const Entry& e : list) quadrics[e.label].add(e.quadric);
   std::vector<CellShape> shapes(seeds.size());
-  parallel_for(run, seeds.size(), 1024, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, seeds.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) shapes[i] = solve(quadrics[i], seeds[i]);
   });
   return shapes;

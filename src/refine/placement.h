@@ -21,6 +21,6 @@ struct CellShape {
 /// pulls it onto creases and corners, by at most half the cell's radius. Labels without samples keep their `seeds`.
 /// Cost: O(samples), about 10 ns each. Same bits for any number of threads.
 std::vector<CellShape> cell_shapes(const SampleSet& samples, std::span<const std::uint32_t> labels,
-                                   std::span<const Vec3> seeds, Run& run);
+                                   std::span<const Vec3> seeds, ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -14,6 +14,7 @@ namespace evenmesh {
 ///
 /// Guarantee: the worst triangle does not get worse; same bits for any number of threads. Cost: O(bad triangles), plus
 /// 30 ns for every triangle. Returns the number of moves.
-std::size_t polish(Mesh& mesh, const Projector* projector, Run& run, const Holds& holds = {});
+std::size_t polish(Mesh& mesh, const Projector* projector, ExecutionContext& context,
+                   const VertexConstraints& constraints = {});
 
 }  // namespace evenmesh

@@ -14,7 +14,8 @@ namespace {
 /// Closest point of the mesh within the bounds, or of the bounds' faces where they cut the mesh.
 class MeshProjector : public Projector {
  public:
-  MeshProjector(const Mesh& mesh, const Box& bounds, Run& run) : query_(mesh, run), bounds_(bounds) {
+  MeshProjector(const Mesh& mesh, const Box& bounds, ExecutionContext& context)
+      : query_(mesh, context), bounds_(bounds) {
     const Box own = mesh.bounds();
     for (int a = 0; a < 3; ++a) cut_[2 * a] = own.lo[a]<bounds.lo[a], cut_[2 * a + 1] = own.hi[a]> bounds.hi[a];
   }
@@ -192,8 +193,8 @@ std::unique_ptr<Projector> make_projector(const SampleSet& samples) {
   return std::make_unique<SampleProjector>(samples);
 }
 
-std::unique_ptr<Projector> make_projector(const Shape& shape, const Box& bounds, Run& run) {
-  if (const Mesh* mesh = shape.mesh()) return std::make_unique<MeshProjector>(*mesh, bounds, run);
+std::unique_ptr<Projector> make_projector(const Shape& shape, const Box& bounds, ExecutionContext& context) {
+  if (const Mesh* mesh = shape.mesh()) return std::make_unique<MeshProjector>(*mesh, bounds, context);
   if (!shape.field() || !shape.field()->has_gradient()) return nullptr;
   return std::make_unique<FieldProjector>(std::get<std::shared_ptr<const Field>>(shape.what), bounds);
 }

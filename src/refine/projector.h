@@ -23,7 +23,7 @@ class Projector {
 /// Closest point of a mesh, or f = 0 of a field by Newton steps in double precision, and the faces of `bounds` where
 /// they cut the solid; null for indicator functions, which know no distance, and point clouds. Cost: a microsecond or
 /// two per point.
-std::unique_ptr<Projector> make_projector(const Shape& shape, const Box& bounds, Run& run);
+std::unique_ptr<Projector> make_projector(const Shape& shape, const Box& bounds, ExecutionContext& context);
 
 /// Two Newton steps of all points at once towards f = 0, for fields of which single points are dear. A point stays
 /// where the way is longer than `limit` (model units), comes within `limit` of a face of the bounds, or does not halve

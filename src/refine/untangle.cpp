@@ -70,17 +70,17 @@ struct Patch {
 
 /// The knot around pairs[first]: its pairs are those that share vertices, one ring included, with others of it; they
 /// are taken off.
-Patch take_knot(const Mesh& mesh, Pairs& pairs, const Holds& holds) {
+Patch take_cluster(const Mesh& mesh, Pairs& pairs, const VertexConstraints& constraints) {
   std::vector<char> in(mesh.vertices.size(), 0);
-  Pairs knot{pairs.front()};
+  Pairs cluster{pairs.front()};
   pairs.erase(pairs.begin());
   for (bool grown = true; grown;) {
-    in = region(mesh, knot, 1);
+    in = region(mesh, cluster, 1);
     grown = false;
     std::erase_if(pairs, [&](const auto& pair) {
       for (const std::uint32_t t : {pair.first, pair.second})
         for (const std::uint32_t v : mesh.triangles[t])
-          if (in[v]) return knot.push_back(pair), grown = true;
+          if (in[v]) return cluster.push_back(pair), grown = true;
       return false;
     });
   }
@@ -104,7 +104,7 @@ Patch take_knot(const Mesh& mesh, Pairs& pairs, const Holds& holds) {
         index[v] = static_cast<std::uint32_t>(patch.vertices.size());
         patch.vertices.push_back(v);
         patch.mesh.vertices.push_back(mesh.vertices[v]);
-        patch.movable.push_back(in[v] && !holds.vertex(v));
+        patch.movable.push_back(in[v] && !constraints.vertex(v));
       }
       local[c] = index[v];
     }
@@ -114,7 +114,7 @@ Patch take_knot(const Mesh& mesh, Pairs& pairs, const Holds& holds) {
 }
 
 /// Tries one kind of motion after the other and keeps what is best; true if anything was gained.
-bool loosen(Patch& patch, const Projector* projector, const IntersectionFinder& find) {
+bool separate(Patch& patch, const Projector* projector, const IntersectionFinder& find) {
   constexpr int motions = 4, steps = 6;
   const Mesh start = patch.mesh;
   const std::size_t before = find(start).size();
@@ -134,39 +134,39 @@ bool loosen(Patch& patch, const Projector* projector, const IntersectionFinder& 
 }
 
 /// Knot by knot, each with what helps there.
-void loosen_knots(Mesh& mesh, Pairs pairs, const Projector* projector, const IntersectionFinder& find,
-                  const Holds& holds, Run& run) {
-  constexpr int most_knots = 200;
-  for (int knot = 0; knot < most_knots && !pairs.empty(); ++knot) {
-    run.throw_if_cancelled();
-    Patch patch = take_knot(mesh, pairs, holds);
-    if (!loosen(patch, projector, find)) continue;
+void separate_clusters(Mesh& mesh, Pairs pairs, const Projector* projector, const IntersectionFinder& find,
+                       const VertexConstraints& constraints, ExecutionContext& context) {
+  constexpr int max_clusters = 200;
+  for (int cluster = 0; cluster < max_clusters && !pairs.empty(); ++cluster) {
+    context.throw_if_cancelled();
+    Patch patch = take_cluster(mesh, pairs, constraints);
+    if (!separate(patch, projector, find)) continue;
     for (std::size_t v = 0; v < patch.vertices.size(); ++v)
       if (patch.movable[v]) mesh.vertices[patch.vertices[v]] = patch.mesh.vertices[v];
   }
 }
 
 /// Returns the number of pairs that are left.
-std::size_t pull_apart(Mesh& mesh, Pairs pairs, const Projector* projector, const IntersectionFinder& find, Run& run,
-                       const Holds& holds) {
-  constexpr int rounds = 12, knot_rounds = 3;
+std::size_t separate(Mesh& mesh, Pairs pairs, const Projector* projector, const IntersectionFinder& find,
+                     ExecutionContext& context, const VertexConstraints& constraints) {
+  constexpr int rounds = 12, cluster_rounds = 3;
   Mesh best = mesh;
   std::size_t fewest = pairs.size();
   for (int round = 0; round < rounds && !pairs.empty(); ++round) {
-    run.throw_if_cancelled();
+    context.throw_if_cancelled();
     // First along the surface; where that does not help, freely: a smoother surface does not run through itself.
     std::vector<char> marked = region(mesh, pairs, round / 4);
-    for (std::uint32_t v = 0; v < marked.size(); ++v) marked[v] = marked[v] && !holds.vertex(v);
+    for (std::uint32_t v = 0; v < marked.size(); ++v) marked[v] = marked[v] && !constraints.vertex(v);
     smooth(mesh, marked, round % 4 < 2 ? projector : nullptr);
-    flip_to_delaunay(mesh, holds);
+    flip_to_delaunay(mesh, constraints);
     pairs = find(mesh);
     if (pairs.size() < fewest) fewest = pairs.size(), best = mesh;
   }
   if (pairs.size() > fewest) mesh = std::move(best);
   if (fewest == 0) return 0;
   best = mesh;
-  for (int round = 0; round < knot_rounds && fewest > 0; ++round) {
-    loosen_knots(mesh, find(mesh), projector, find, holds, run);
+  for (int round = 0; round < cluster_rounds && fewest > 0; ++round) {
+    separate_clusters(mesh, find(mesh), projector, find, constraints, context);
     const std::size_t left = find(mesh).size();
     if (left >= fewest) break;
     fewest = left, best = mesh;
@@ -177,14 +177,14 @@ std::size_t pull_apart(Mesh& mesh, Pairs pairs, const Projector* projector, cons
 
 }  // namespace
 
-std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run,
-                     const Holds& holds) {
+std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, ExecutionContext& context,
+                     const VertexConstraints& constraints) {
   Pairs pairs = find(mesh);
   if (pairs.empty()) return 0;
-  const std::size_t left = pull_apart(mesh, std::move(pairs), projector, find, run, holds);
+  const std::size_t left = separate(mesh, std::move(pairs), projector, find, context, constraints);
   // What was pulled apart without regard to shapes is polished; where that would undo it, it stays as it is.
   Mesh polished = mesh;
-  polish(polished, projector, run, holds);
+  polish(polished, projector, context, constraints);
   for (int rings = 0; rings < polishing_rounds; ++rings) {
     const Pairs again = find(polished);
     if (again.size() <= left) {

@@ -19,7 +19,7 @@ using IntersectionFinder = std::function<std::vector<std::pair<std::uint32_t, st
 /// helps; then polishes what has become worse by it. Returns the number of pairs that are left. Cost: one search, and
 /// one more for every round that was needed (at most 12), and for the polish.
 /// @pre  two-manifold
-std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, Run& run,
-                     const Holds& holds = {});
+std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, ExecutionContext& context,
+                     const VertexConstraints& constraints = {});
 
 }  // namespace evenmesh

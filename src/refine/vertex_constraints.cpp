@@ -7,35 +7,35 @@
 namespace evenmesh {
 namespace {
 
-struct ChainPoint {
+struct CurvePoint {
   Vec3 place;
   double arc = 0;  ///< length of the chain up to there
 };
 
-ChainPoint nearest_on(const CreaseChain& chain, const Vec3& p) {
-  const std::vector<Vec3>& points = chain.points;
+CurvePoint nearest_on(const FeatureCurve& curve, const Vec3& p) {
+  const std::vector<Vec3>& points = curve.points;
   double nearest = std::numeric_limits<double>::infinity();
-  ChainPoint best{points.front(), 0};
+  CurvePoint best{points.front(), 0};
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Vec3 along = points[i + 1] - points[i], from = p - points[i];
     const double length2 = squared_norm(along);
     const double share = length2 > 0 ? std::clamp(dot(from, along) / length2, 0.0, 1.0) : 0;
     if (const double d = squared_norm(from - share * along); d < nearest)
-      nearest = d, best = {points[i] + share * along, chain.arc[i] + share * (chain.arc[i + 1] - chain.arc[i])};
+      nearest = d, best = {points[i] + share * along, curve.arc[i] + share * (curve.arc[i + 1] - curve.arc[i])};
   }
   return best;
 }
 
 /// Largest distance of the chain between two of its points from the chord; around a closed chain the shorter way.
-double bulge_between(const CreaseChain& chain, const Vec3& p, const Vec3& q) {
-  const auto [s, t] = std::minmax({nearest_on(chain, p).arc, nearest_on(chain, q).arc});
-  const bool around = chain.points.front() == chain.points.back() && 2 * (t - s) > chain.length();
+double deviation_between(const FeatureCurve& curve, const Vec3& p, const Vec3& q) {
+  const auto [s, t] = std::minmax({nearest_on(curve, p).arc, nearest_on(curve, q).arc});
+  const bool around = curve.points.front() == curve.points.back() && 2 * (t - s) > curve.length();
   const Vec3 along = q - p;
   const double length2 = squared_norm(along);
   double most = 0;
-  for (std::size_t i = 0; i < chain.points.size(); ++i) {
-    if ((chain.arc[i] > s && chain.arc[i] < t) == around) continue;
-    const Vec3 from = chain.points[i] - p;
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    if ((curve.arc[i] > s && curve.arc[i] < t) == around) continue;
+    const Vec3 from = curve.points[i] - p;
     const double share = length2 > 0 ? std::clamp(dot(from, along) / length2, 0.0, 1.0) : 0;
     most = std::max(most, squared_norm(from - share * along));
   }
@@ -44,25 +44,27 @@ double bulge_between(const CreaseChain& chain, const Vec3& p, const Vec3& q) {
 
 }  // namespace
 
-bool Holds::edge(std::uint32_t a, std::uint32_t b) const {
+bool VertexConstraints::edge(std::uint32_t a, std::uint32_t b) const {
   return vertex(a) && vertex(b) &&
          std::binary_search(edges.begin(), edges.end(), std::array{std::min(a, b), std::max(a, b)});
 }
 
-void Holds::release(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
-  if (chain.empty()) return;
+void VertexConstraints::release(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
+  if (curve.empty()) return;
   for (const std::uint32_t t : triangles)
-    for (const std::uint32_t v : mesh.triangles[t]) chain[v] = free;
+    for (const std::uint32_t v : mesh.triangles[t]) curve[v] = free;
 }
 
-Vec3 Holds::slide(std::uint32_t v, const Vec3& p) const {
-  return nearest_on(creases.chains[chain[v]], p).place;
+Vec3 VertexConstraints::slide(std::uint32_t v, const Vec3& p) const {
+  return nearest_on(features.curves[curve[v]], p).place;
 }
 
-double Holds::bulge(const Mesh& mesh, std::uint32_t v, std::span<const std::uint32_t> neighbours) const {
+double VertexConstraints::chordal_deviation(const Mesh& mesh, std::uint32_t v,
+                                            std::span<const std::uint32_t> neighbours) const {
   double most = 0;
   for (const std::uint32_t w : neighbours)
-    if (edge(v, w)) most = std::max(most, bulge_between(creases.chains[chain[v]], mesh.vertices[v], mesh.vertices[w]));
+    if (edge(v, w))
+      most = std::max(most, deviation_between(features.curves[curve[v]], mesh.vertices[v], mesh.vertices[w]));
   return most;
 }
 

@@ -19,7 +19,7 @@ struct Placed {
   std::uint32_t source;
   float t;
   EdgeCode code;
-  bool made;
+  bool synthetic;
 };
 
 // The crossings of one axis within one brick: a range of its slab's placed crossings. Sorting by key sorts by the
@@ -46,9 +46,9 @@ struct SourceNormal {
   bool degenerate() const { return area[0] + area[1] + area[2] == 0; }
 };
 
-std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const Run& run) {
+std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const ExecutionContext& context) {
   std::vector<SourceNormal> normals(mesh.triangles.size());
-  parallel_for(run, normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle& t = mesh.triangles[i];
       // In units of the spacing, so that small models do not underflow.
@@ -62,9 +62,10 @@ std::vector<SourceNormal> source_normals(const Mesh& mesh, double spacing, const
   return normals;
 }
 
-std::vector<SourceNormal> source_normals(std::span<const PackedNormal> given, double spacing, const Run& run) {
+std::vector<SourceNormal> source_normals(std::span<const PackedNormal> given, double spacing,
+                                         const ExecutionContext& context) {
   std::vector<SourceNormal> normals(given.size());
-  parallel_for(run, normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       normals[i].normal = given[i];
       if (normals[i].missing()) continue;
@@ -117,7 +118,7 @@ void place_slab(const DexelSlab& slab, int axis, std::size_t index, std::vector<
         const DexelCrossing& crossing = slab.crossings[c];
         at[shift] = crossing.cell % brick_size;
         placed.crossings[count[crossing.cell / brick_size]++] = {
-            crossing.source, crossing.t, EdgeCode(shift, at[0], at[1], at[2], !crossing.enters), crossing.made};
+            crossing.source, crossing.t, EdgeCode(shift, at[0], at[1], at[2], !crossing.enters), crossing.synthetic};
       }
     }
     for (std::size_t w = lowest; first < last && w <= highest; ++w) count[w] = 0;
@@ -126,7 +127,7 @@ void place_slab(const DexelSlab& slab, int axis, std::size_t index, std::vector<
 
 using PlacedAxes = std::array<std::vector<PlacedSlab>, 3>;
 
-PlacedAxes place_all(const TriDexel& solid, const Run& run) {
+PlacedAxes place_all(const TriDexel& solid, const ExecutionContext& context) {
   PlacedAxes placed;
   std::vector<std::pair<int, std::size_t>> tasks;
   for (int a = 0; a < 3; ++a) {
@@ -135,7 +136,7 @@ PlacedAxes place_all(const TriDexel& solid, const Run& run) {
     for (std::size_t s = 0; s < slabs; ++s) tasks.emplace_back(a, s);
   }
   const std::size_t bricks = *std::max_element(solid.grid.size.begin(), solid.grid.size.end()) / brick_size + 1;
-  parallel_for(run, tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> count(bricks);
     for (std::size_t i = begin; i < end; ++i) {
       const auto a = static_cast<std::size_t>(tasks[i].first);
@@ -227,10 +228,10 @@ class BlockWriter {
     if (source_ != nullptr) source_[out] = c.source;
     const SourceNormal& source = normals_[c.source];
     const bool upward = c.code.lower_end_inside();
-    if (c.made || source.degenerate()) {
+    if (c.synthetic || source.degenerate()) {
       normal_[out] = axis_normal_[axis][upward];
       area_[out] = h_ * h_;
-      if (!c.made && source.missing()) normal_[out] = no_normal;
+      if (!c.synthetic && source.missing()) normal_[out] = no_normal;
       return;
     }
     normal_[out] = is_upward(source.normal, axis) == upward ? source.normal : opposite(source.normal);
@@ -248,15 +249,15 @@ class BlockWriter {
 };
 
 SampleSet sample_with(const TriDexel& solid, const std::vector<SourceNormal>& normals, bool with_sources,
-                      const Run& run) {
+                      const ExecutionContext& context) {
   SampleSet set;
   set.grid = solid.grid;
   set.unresolved = solid.unresolved, set.disagreements = solid.disagreements, set.cut_by_bounds = solid.cut_by_bounds;
-  const PlacedAxes placed = place_all(solid, run);
+  const PlacedAxes placed = place_all(solid, context);
   const std::vector<Piece> pieces = sorted_pieces(placed);
   const std::vector<std::uint32_t> first = make_blocks(pieces, set);
-  resize_samples(set, set.blocks.empty() ? 0 : set.blocks.back().end, with_sources, run);
-  parallel_for(run, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+  resize_samples(set, set.blocks.empty() ? 0 : set.blocks.back().end, with_sources, context);
+  parallel_for(context, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     BlockWriter writer(normals, set);
     for (std::size_t b = begin; b < end; ++b) {
       std::uint32_t out = set.blocks[b].begin;
@@ -269,23 +270,23 @@ SampleSet sample_with(const TriDexel& solid, const std::vector<SourceNormal>& no
       }
     }
   });
-  mark_axes(set, run);
-  sum_area(set, run);
+  mark_axes(set, context);
+  sum_area(set, context);
   return set;
 }
 
 }  // namespace
 
-SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const Run& run) {
-  return sample_with(solid, source_normals(mesh, solid.grid.spacing, run), true, run);
+SampleSet sample_dexels(const TriDexel& solid, const Mesh& mesh, const ExecutionContext& context) {
+  return sample_with(solid, source_normals(mesh, solid.grid.spacing, context), true, context);
 }
 
-SampleSet sample_dexels(const TriDexel& solid, std::span<const PackedNormal> normals, const Run& run) {
-  SampleSet set = sample_with(solid, source_normals(normals, solid.grid.spacing, run), false, run);
+SampleSet sample_dexels(const TriDexel& solid, std::span<const PackedNormal> normals, const ExecutionContext& context) {
+  SampleSet set = sample_with(solid, source_normals(normals, solid.grid.spacing, context), false, context);
   const auto missing = [](PackedNormal n) { return n.bits == no_normal.bits; };
   if (std::any_of(set.normal.begin(), set.normal.end(), missing)) {
-    fit_missing_normals(set, run);
-    sum_area(set, run);
+    fit_missing_normals(set, context);
+    sum_area(set, context);
   }
   return set;
 }

@@ -26,14 +26,15 @@ struct Nearest {
 /// Exact distances by closest-point queries.
 class SurfaceDistance {
  public:
-  SurfaceDistance(const SampleSet& samples, Run& run) : grid_(samples.grid), inside_(samples, run) {
-    const Mesh mesh = dual_surface(samples, run);
+  SurfaceDistance(const SampleSet& samples, ExecutionContext& context)
+      : grid_(samples.grid), inside_(samples, context) {
+    const Mesh mesh = dual_surface(samples, context);
     normal_.resize(mesh.triangles.size());
     for (std::size_t t = 0; t < normal_.size(); ++t) {
       const auto [a, b, c] = corners_of(mesh, t);
       normal_[t] = pack_normal(normalized(area_normal(a, b, c)));
     }
-    query_.emplace(mesh, run);
+    query_.emplace(mesh, context);
   }
   double spacing() const { return grid_.spacing; }
 
@@ -80,15 +81,16 @@ class DistanceLattice {
  public:
   /// @param step   side of the smallest cells, model units
   /// @param levels  of cells above those
-  DistanceLattice(const SurfaceDistance& surface, double level, double step, int levels, const Box& box, Run& run)
+  DistanceLattice(const SurfaceDistance& surface, double level, double step, int levels, const Box& box,
+                  ExecutionContext& context)
       : surface_(surface), level_(level), step_(step), origin_(box.lo) {
     int top = levels;
     while (std::ldexp(step, top) < box.longest_side()) ++top;
     top_ = top;
     std::vector<Corner> cells{{0, 0, 0}};
     for (int l = top; l >= 0 && !cells.empty(); --l) {
-      std::vector<Leaf> leaves = judge(cells, l, box, run);
-      if (l <= levels) look_at_corners(cells, l, leaves, run);
+      std::vector<Leaf> leaves = judge(cells, l, box, context);
+      if (l <= levels) look_at_corners(cells, l, leaves, context);
       cells = settle(cells, l, leaves);
     }
   }
@@ -128,10 +130,11 @@ class DistanceLattice {
   Vec3 point(const Corner& c) const { return origin_ + step_ * Vec3{double(c[0]), double(c[1]), double(c[2])}; }
 
   /// Which cells of one size cannot hold the level; the others are to be split.
-  std::vector<Leaf> judge(const std::vector<Corner>& cells, int l, const Box& box, const Run& run) const {
+  std::vector<Leaf> judge(const std::vector<Corner>& cells, int l, const Box& box,
+                          const ExecutionContext& context) const {
     std::vector<Leaf> leaves(cells.size());
     const double side = std::ldexp(step_, l);
-    parallel_for(run, cells.size(), 16, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, cells.size(), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Vec3 lo = point(cells[i]);
         if (lo.x > box.hi.x || lo.y > box.hi.y || lo.z > box.hi.z) {
@@ -146,19 +149,20 @@ class DistanceLattice {
   }
 
   /// Distances at the corners of the cells left; they are smooth, or rough if they cannot be split.
-  void look_at_corners(const std::vector<Corner>& cells, int l, std::vector<Leaf>& leaves, const Run& run) {
+  void look_at_corners(const std::vector<Corner>& cells, int l, std::vector<Leaf>& leaves,
+                       const ExecutionContext& context) {
     const std::uint32_t side = 1u << l;
     std::vector<std::uint64_t> keys;
     for (std::size_t i = 0; i < cells.size(); ++i)
       for (unsigned k = 0; leaves[i].kind == Kind::split && k < 8; ++k)
         if (const std::uint64_t key = key_of(corner_of(cells[i], k, side)); !node_of_.contains(key))
           keys.push_back(key);
-    parallel_sort(run, keys);
+    parallel_sort(context, keys);
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     const auto first = static_cast<std::uint32_t>(node_.size());
     node_.resize(first + keys.size());
     for (std::uint32_t n = 0; n < keys.size(); ++n) node_of_.emplace(keys[n], first + n);
-    parallel_for(run, keys.size(), 64, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, keys.size(), 64, [&](std::size_t begin, std::size_t end) {
       Vec3 last;
       double bound = std::abs(level_) + 3 * std::ldexp(step_, l);
       for (std::size_t n = begin; n < end; ++n) {
@@ -169,7 +173,7 @@ class DistanceLattice {
         bound = std::abs(node.distance), last = p;
       }
     });
-    parallel_for(run, cells.size(), 256, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, cells.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (leaves[i].kind != Kind::split) continue;
         for (unsigned k = 0; k < 8; ++k) leaves[i].node[k] = node_of_.at(key_of(corner_of(cells[i], k, side)));
@@ -272,11 +276,11 @@ class DistanceLattice {
 
 class DistanceField final : public Field {
  public:
-  DistanceField(const SampleSet& samples, double offset, double spacing, const Box& box, Run& run)
-      : offset_(offset), surface_(samples, run) {
+  DistanceField(const SampleSet& samples, double offset, double spacing, const Box& box, ExecutionContext& context)
+      : offset_(offset), surface_(samples, context) {
     // A distance changes its direction over about as much as itself.
     const double cells = std::abs(offset) / spacing;
-    lattice_.emplace(surface_, offset, spacing, cells >= 24 ? 3 : cells >= 8 ? 2 : cells >= 2.5 ? 1 : 0, box, run);
+    lattice_.emplace(surface_, offset, spacing, cells >= 24 ? 3 : cells >= 8 ? 2 : cells >= 2.5 ? 1 : 0, box, context);
   }
 
   void evaluate(const PointBatch& points, std::span<float> values) const override {
@@ -318,8 +322,8 @@ class DistanceField final : public Field {
 }  // namespace
 
 std::shared_ptr<const Field> distance_field(const SampleSet& samples, double offset, double spacing, const Box& box,
-                                            Run& run) {
-  return std::make_shared<DistanceField>(samples, offset, spacing, box, run);
+                                            ExecutionContext& context) {
+  return std::make_shared<DistanceField>(samples, offset, spacing, box, context);
 }
 
 }  // namespace evenmesh

@@ -20,6 +20,6 @@ namespace evenmesh {
 /// @param spacing  of the points that will be asked for, model units
 /// @param box      within which they lie
 std::shared_ptr<const Field> distance_field(const SampleSet& samples, double offset, double spacing, const Box& box,
-                                            Run& run);
+                                            ExecutionContext& context);
 
 }  // namespace evenmesh

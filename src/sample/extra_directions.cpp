@@ -22,17 +22,17 @@ bool inside_along(const TriDexel& rays, std::size_t axis, const std::array<doubl
 
 }  // namespace
 
-Witnesses::Witnesses(const Mesh& mesh, double spacing, Winding winding, Run& run) {
+ExtraDirections::ExtraDirections(const Mesh& mesh, double spacing, Winding winding, ExecutionContext& context) {
   for (const Affine& turn : {Affine::rotate({1, 2, 3}, 41), Affine::rotate({-2, 1, 1.4}, 73)}) {
     Mesh turned = mesh;
     for (Vec3& v : turned.vertices) v = turn(v);
     const Box box = turned.bounds();
     const double cells = std::clamp(std::ceil(box.longest_side() / spacing), 8.0, 8192.0);
-    frames_.push_back({turn, scan_rays(turned, make_grid(box, static_cast<std::size_t>(cells)), run, winding)});
+    frames_.push_back({turn, scan_rays(turned, make_grid(box, static_cast<std::size_t>(cells)), context, winding)});
   }
 }
 
-int Witnesses::inside(const Vec3& p) const {
+int ExtraDirections::inside(const Vec3& p) const {
   int count = 0;
   for (const Frame& frame : frames_) {
     const Grid& grid = frame.rays.grid;
@@ -56,8 +56,8 @@ double agreement(const TriDexel& rays) {
   return any == 0 ? 0 : static_cast<double>(agreed) / static_cast<double>(any);
 }
 
-double solidity(const Mesh& mesh, Run& run) {
-  return with_threads(run, [&] { return agreement(scan_rays(mesh, make_grid(mesh.bounds(), 64), run)); });
+double solidity(const Mesh& mesh, ExecutionContext& context) {
+  return with_threads(context, [&] { return agreement(scan_rays(mesh, make_grid(mesh.bounds(), 64), context)); });
 }
 
 }  // namespace evenmesh

@@ -9,12 +9,12 @@
 namespace evenmesh {
 
 /// A mesh scanned in turned frames: six more directions for any point.
-class Witnesses {
+class ExtraDirections {
  public:
   static constexpr int directions = 6;
 
   /// Cost: that of two scans.
-  Witnesses(const Mesh& mesh, double spacing, Winding winding, Run& run);
+  ExtraDirections(const Mesh& mesh, double spacing, Winding winding, ExecutionContext& context);
 
   /// In how many of the directions the ray next to p has p inside. Cost: about 0.3 µs.
   int inside(const Vec3& p) const;

@@ -103,7 +103,7 @@ class RootFinder {
   struct Root {
     float t = 0;
     float n[3] = {};
-    bool made = false;
+    bool synthetic = false;
   };
   void find_batch(std::span<Bracket> brackets, std::size_t first, FieldPart& part);
   void place(std::size_t slot, const Bracket& bracket, float t);
@@ -129,18 +129,19 @@ class RootFinder {
 ///
 /// A brick's samples tell the signs at its grid points and those one step beyond; where the ones on a face differ, the
 /// surface goes through it. @param fresh  the parts from this one on are looked at
-std::vector<GridCube> torn_bricks(std::span<const FieldPart> parts, std::size_t fresh, const Run& run);
+std::vector<GridCube> surface_continuation(std::span<const FieldPart> parts, std::size_t fresh,
+                                           const ExecutionContext& context);
 
 /// Samples where f changes its sign on the grid and within the bounds (empty: the grid's), without sources.
 ///
 /// Fields that want batches and tell nothing about boxes are not asked at every point of grids with 640 points or more
 /// along a side: a surface that is seen at one of 240 points along it or more is found whole, smaller pieces that lie
 /// apart may be missed. They would be smaller than the cells of a mesh.
-SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, const Run& run);
+SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, const ExecutionContext& context);
 
 /// Normals and areas from the positions of the samples around each: least-squares planes, oriented by the edges' codes.
-void fit_normals(SampleSet& set, const Run& run);
+void fit_normals(SampleSet& set, const ExecutionContext& context);
 /// The same for the samples whose normal is no_normal (tri_dexel.h), without their total area.
-void fit_missing_normals(SampleSet& set, const Run& run);
+void fit_missing_normals(SampleSet& set, const ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -6,13 +6,13 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t kBatch = 1024;  // least points per evaluation: enough to hide its overhead, few for the cache
-constexpr float kTolerance = 1e-4f;   // cells
-constexpr float kRough = 4e-3f;       // cells; where values are dear, and f so rough that no chord finds the root
-constexpr float kAgreement = 1e-3f;   // cells; between Newton's and the secant's guess
-constexpr float kBeyond = 1e-3f;      // cells beyond a face of the bounds where f is asked whether it goes on
-constexpr int kMostSteps = 40;
-constexpr int kBisections = 12;
+constexpr std::size_t min_batch = 1024;  // least points per evaluation: enough to hide its overhead, few for the cache
+constexpr float root_tolerance = 1e-4f;  // cells
+constexpr float rough = 4e-3f;           // cells; where values are dear, and f so rough that no chord finds the root
+constexpr float agreement = 1e-3f;       // cells; between Newton's and the secant's guess
+constexpr float beyond = 1e-3f;          // cells beyond a face of the bounds where f is asked whether it goes on
+constexpr int max_steps = 40;
+constexpr int bisections = 12;
 
 bool inside(float f) {
   return f < 0.0f;
@@ -51,7 +51,7 @@ void RootFinder::find(const Field& field, const FieldGrid& grid, std::vector<Bra
   field_ = &field, grid_ = &grid, part_ = &part;
   for (std::vector<float>* v : {&part.x, &part.y, &part.z, &part.area}) v->resize(brackets.size());
   part.normal.resize(brackets.size()), part.edge.resize(brackets.size());
-  const std::size_t batch = std::max(kBatch, field.batch_size());
+  const std::size_t batch = std::max(min_batch, field.batch_size());
   for (std::size_t begin = 0; begin < brackets.size(); begin += batch)
     find_batch(std::span(brackets).subspan(begin, std::min(batch, brackets.size() - begin)), begin, part);
 }
@@ -75,7 +75,7 @@ void RootFinder::find_batch(std::span<Bracket> brackets, std::size_t first, Fiel
     refine(brackets);
     active_.clear();
     for (std::uint32_t i = 0; i < brackets.size(); ++i)
-      if (!roots_[i].made) active_.push_back(i);
+      if (!roots_[i].synthetic) active_.push_back(i);
     differentiate(brackets, active_);
   }
   normalize(brackets);
@@ -104,7 +104,7 @@ void RootFinder::evaluate(std::size_t n) {
 void RootFinder::clip_to_bounds(std::span<Bracket> brackets) {
   on_bounds_.clear();
   const auto probe = [](const Bracket& b) {
-    return b.code.lower_end_inside() ? std::min(b.t_hi + kBeyond, 1.0f) : std::max(b.t_lo - kBeyond, 0.0f);
+    return b.code.lower_end_inside() ? std::min(b.t_hi + beyond, 1.0f) : std::max(b.t_lo - beyond, 0.0f);
   };
   for (std::uint32_t i = 0; i < brackets.size(); ++i)
     if (brackets[i].on_bounds) {
@@ -118,7 +118,7 @@ void RootFinder::clip_to_bounds(std::span<Bracket> brackets) {
     const bool up = b.code.lower_end_inside();
     const float face = up ? b.t_hi : b.t_lo;
     if (inside(f_[s])) {
-      root.made = true, root.t = face;
+      root.synthetic = true, root.t = face;
     } else if (up) {
       b.t_hi = probe(b), b.f_hi = f_[s];
     } else {
@@ -132,7 +132,7 @@ void RootFinder::clip_to_bounds(std::span<Bracket> brackets) {
 // to the end of the flat one. The gradients are left for the end.
 void RootFinder::first_values(std::span<Bracket> brackets) {
   for (std::uint32_t i = 0; i < brackets.size(); ++i) {
-    if (roots_[i].made) continue;
+    if (roots_[i].synthetic) continue;
     roots_[i].t = chord_root(brackets[i]);
     place(active_.size(), brackets[i], roots_[i].t);
     active_.push_back(i);
@@ -148,7 +148,7 @@ void RootFinder::first_values(std::span<Bracket> brackets) {
     narrow(b, root.t, f_[s]);
     const float chord = chord_root(b);
     const bool known = std::isfinite(b.f_lo) && std::isfinite(b.f_hi) && std::isfinite(behind_f);
-    if (known && std::abs(chord - root.t) < kAgreement && std::abs(step) < kAgreement)
+    if (known && std::abs(chord - root.t) < agreement && std::abs(step) < agreement)
       root.t = chord;
     else
       active_[left++] = active_[s];
@@ -162,7 +162,7 @@ void RootFinder::first_guess(std::span<Bracket> brackets) {
   const std::size_t n = brackets.size();
   const float h = static_cast<float>(grid_->grid.spacing);
   for (std::size_t i = 0; i < n; ++i) {
-    if (!roots_[i].made) roots_[i].t = chord_root(brackets[i]);
+    if (!roots_[i].synthetic) roots_[i].t = chord_root(brackets[i]);
     place(i, brackets[i], roots_[i].t);
   }
   field_->evaluate_gradient({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)},
@@ -170,12 +170,12 @@ void RootFinder::first_guess(std::span<Bracket> brackets) {
                             std::span(dz_).first(n));
   for (std::uint32_t i = 0; i < n; ++i) {
     Root& root = roots_[i];
-    if (root.made) continue;
+    if (root.synthetic) continue;
     root.n[0] = dx_[i], root.n[1] = dy_[i], root.n[2] = dz_[i];
     narrow(brackets[i], root.t, f_[i]);
     const float newton = root.t - f_[i] / (root.n[brackets[i].code.axis()] * h), chord = chord_root(brackets[i]);
     const bool known = std::isfinite(brackets[i].f_lo) && std::isfinite(brackets[i].f_hi);
-    if (known && std::abs(newton - chord) < kAgreement && newton >= brackets[i].t_lo && newton <= brackets[i].t_hi)
+    if (known && std::abs(newton - chord) < agreement && newton >= brackets[i].t_lo && newton <= brackets[i].t_hi)
       root.t = newton;
     else
       active_.push_back(i);
@@ -185,8 +185,8 @@ void RootFinder::first_guess(std::span<Bracket> brackets) {
 // The Illinois variant of regula falsi, with a bisection every third step, and from the seventh on only those. Guesses
 // keep half a tolerance away from the ends, so that a root next to one end closes the bracket.
 void RootFinder::refine(std::span<Bracket> brackets) {
-  const float tolerance = field_->differentiates() ? kTolerance : kRough;
-  for (int step = 0; step < kMostSteps && !active_.empty(); ++step) {
+  const float tolerance = field_->differentiates() ? root_tolerance : rough;
+  for (int step = 0; step < max_steps && !active_.empty(); ++step) {
     for (std::size_t s = 0; s < active_.size(); ++s) {
       const Bracket& b = brackets[active_[s]];
       const float margin = std::min(0.5f * tolerance, 0.5f * (b.t_hi - b.t_lo));
@@ -224,12 +224,12 @@ void RootFinder::differentiate(std::span<const Bracket> brackets, std::span<cons
 }
 
 void RootFinder::bisect(std::span<Bracket> brackets) {
-  for (int step = 0; step <= kBisections; ++step) {
+  for (int step = 0; step <= bisections; ++step) {
     for (std::size_t i = 0; i < brackets.size(); ++i) {
-      if (!roots_[i].made) roots_[i].t = 0.5f * (brackets[i].t_lo + brackets[i].t_hi);
+      if (!roots_[i].synthetic) roots_[i].t = 0.5f * (brackets[i].t_lo + brackets[i].t_hi);
       place(i, brackets[i], roots_[i].t);
     }
-    if (step == kBisections) return;
+    if (step == bisections) return;
     evaluate(brackets.size());
     for (std::size_t i = 0; i < brackets.size(); ++i) narrow(brackets[i], roots_[i].t, f_[i]);
   }
@@ -250,7 +250,7 @@ void RootFinder::normalize(std::span<const Bracket> brackets) {
     f_[i] = inverse;
   }
   for (std::size_t i = 0; i < brackets.size(); ++i) {
-    if (!roots_[i].made && f_[i] > 0.0f && f_[i] <= 1.0f) continue;
+    if (!roots_[i].synthetic && f_[i] > 0.0f && f_[i] <= 1.0f) continue;
     const float outward = brackets[i].code.lower_end_inside() ? 1.0f : -1.0f;
     const unsigned axis = brackets[i].code.axis();
     dx_[i] = axis == 0 ? outward : 0.0f, dy_[i] = axis == 1 ? outward : 0.0f, dz_[i] = axis == 2 ? outward : 0.0f;
@@ -270,7 +270,7 @@ void RootFinder::append(std::span<const Bracket> brackets, std::size_t first, Fi
     part.area[out] = h * h * std::abs(axis == 0 ? dx_[i] : axis == 1 ? dy_[i] : dz_[i]);
     part.normal[out] = pack_normal(dx_[i], dy_[i], dz_[i]);
     part.edge[out] = code;
-    part.cut_by_bounds = part.cut_by_bounds || roots_[i].made;
+    part.cut_by_bounds = part.cut_by_bounds || roots_[i].synthetic;
   }
 }
 

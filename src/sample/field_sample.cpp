@@ -9,14 +9,14 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::size_t kMostNodes = 64;  // of a task: the roots of all are sought together
+constexpr std::size_t max_nodes = 64;  // of a task: the roots of all are sought together
 
 using Cubes = std::vector<GridCube>;
 
 // What interval arithmetic says about a cube of grid points.
 enum class Verdict { empty, mixed, unknown };
 
-// Holds all points that are asked for in the cube: roots and probes are rounded.
+// VertexConstraints all points that are asked for in the cube: roots and probes are rounded.
 Box box_of(const FieldGrid& grid, const GridCube& cube) {
   Box box;
   const double slack = 0.01 * grid.grid.spacing;
@@ -40,7 +40,7 @@ bool meets_bounds(const FieldGrid& grid, const GridCube& cube) {
 // From the root of the grid to bricks, all cubes of one size together. Keeps the order.
 class Descent {
  public:
-  Descent(const Field& field, const FieldGrid& grid) : field_(field), grid_(grid), batches_(wants_batches(field)) {}
+  Descent(const Field& field, const FieldGrid& grid) : field_(field), grid_(grid), batches_(prefers_batches(field)) {}
 
   // Leaves out the cubes of this side on which f keeps its sign.
   void sift(Cubes& cubes, unsigned side) {
@@ -189,7 +189,7 @@ unsigned stride_of(const Field& field, const Grid& grid) {
   constexpr std::uint32_t fine = 640, enough = 240;
   const std::uint32_t longest = *std::max_element(grid.size.begin(), grid.size.end());
   unsigned stride = 1;
-  while (wants_batches(field) && stride < brick_size && longest >= std::max(fine, 2 * stride * enough)) stride *= 2;
+  while (prefers_batches(field) && stride < brick_size && longest >= std::max(fine, 2 * stride * enough)) stride *= 2;
   return stride;
 }
 
@@ -201,7 +201,7 @@ struct Worker {
 
   void sample(const Field& whole, const FieldGrid& grid, std::span<const GridCube> nodes, unsigned stride,
               FieldPart& part) {
-    const bool batches = wants_batches(whole);
+    const bool batches = prefers_batches(whole);
     const auto local = batches ? nullptr : whole.specialized(box_of(grid, nodes[0]));
     const Field& field = local ? *local : whole;
     cubes.assign(nodes.begin(), nodes.end());
@@ -223,10 +223,10 @@ struct Worker {
 
 // How many nodes a thread takes at once: one, for which the field is specialized, or so many that calls are few.
 std::size_t nodes_per_task(const Field& field, std::size_t nodes) {
-  return wants_batches(field) ? std::clamp<std::size_t>(nodes / 4, 1, kMostNodes) : 1;
+  return prefers_batches(field) ? std::clamp<std::size_t>(nodes / 4, 1, max_nodes) : 1;
 }
 
-SampleSet join_parts(const Grid& grid, const std::vector<FieldPart>& parts, const Run& run) {
+SampleSet join_parts(const Grid& grid, const std::vector<FieldPart>& parts, const ExecutionContext& context) {
   SampleSet set;
   set.grid = grid;
   struct Piece {
@@ -247,8 +247,8 @@ SampleSet join_parts(const Grid& grid, const std::vector<FieldPart>& parts, cons
     block.begin = count, count += piece.block.end - piece.block.begin, block.end = count;
     set.blocks.push_back(block);
   }
-  resize_samples(set, count, false, run);
-  parallel_for(run, pieces.size(), 256, [&](std::size_t begin, std::size_t end) {
+  resize_samples(set, count, false, context);
+  parallel_for(context, pieces.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const FieldPart& part = parts[pieces[i].part];
       const auto copy = [&](const auto& from, auto& to) {
@@ -263,13 +263,13 @@ SampleSet join_parts(const Grid& grid, const std::vector<FieldPart>& parts, cons
 }
 
 // Where the field's word of what is empty was wrong, the surface is followed; pieces that lie apart stay unseen.
-void follow(const Field& field, const FieldGrid& grid, std::vector<FieldPart>& parts, const Run& run) {
+void follow(const Field& field, const FieldGrid& grid, std::vector<FieldPart>& parts, const ExecutionContext& context) {
   constexpr std::size_t most = 4096;  // bricks of a part
   for (std::size_t fresh = 0; fresh < parts.size();) {
-    const Cubes torn = torn_bricks(parts, fresh, run);
+    const Cubes torn = surface_continuation(parts, fresh, context);
     fresh = parts.size();
     parts.resize(fresh + (torn.size() + most - 1) / most);
-    parallel_for(run, parts.size() - fresh, 1, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, parts.size() - fresh, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Worker worker;
         worker.scan(field, grid, std::span(torn).subspan(i * most, std::min(most, torn.size() - i * most)),
@@ -281,23 +281,23 @@ void follow(const Field& field, const FieldGrid& grid, std::vector<FieldPart>& p
 
 }  // namespace
 
-SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, const Run& run) {
+SampleSet sample_field(const Field& field, const Grid& grid, const Box& bounds, const ExecutionContext& context) {
   const FieldGrid field_grid = make_field_grid(grid, bounds);
   const Cubes nodes = collect_nodes(field, field_grid);
   const unsigned stride = stride_of(field, grid);
   const std::size_t step = nodes_per_task(field, nodes.size());
   std::vector<FieldPart> parts((nodes.size() + step - 1) / step);
-  parallel_for(run, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     Worker worker;
     for (std::size_t i = begin; i < end; ++i)
       worker.sample(field, field_grid, std::span(nodes).subspan(i * step, std::min(step, nodes.size() - i * step)),
                     stride, parts[i]);
   });
-  if (stride > 1 || !field.encloses_surely()) follow(field, field_grid, parts, run);
-  SampleSet set = join_parts(grid, parts, run);
-  mark_axes(set, run);
-  if (!field.has_gradient()) fit_normals(set, run);
-  sum_area(set, run);
+  if (stride > 1 || !field.encloses_surely()) follow(field, field_grid, parts, context);
+  SampleSet set = join_parts(grid, parts, context);
+  mark_axes(set, context);
+  if (!field.has_gradient()) fit_normals(set, context);
+  sum_area(set, context);
   return set;
 }
 

@@ -183,7 +183,7 @@ void TileScanner::scan(const Field& field, const FieldGrid& grid, std::span<cons
                        std::vector<Bracket>& brackets, FieldPart& part) {
   while (!cubes.empty()) {
     cubes =
-        cubes.subspan(wants_batches(field) ? evaluate_shared(field, grid, cubes) : evaluate_all(field, grid, cubes));
+        cubes.subspan(prefers_batches(field) ? evaluate_shared(field, grid, cubes) : evaluate_all(field, grid, cubes));
     for (const Tile& tile : tiles_)
       for (const GridCube& cube : tile.cubes) scan_cube(tile, cube, grid, brackets, part);
   }

@@ -10,10 +10,10 @@
 namespace evenmesh {
 namespace {
 
-constexpr int kReach = 2;                       // cells around a sample that are searched
-constexpr int kSide = brick_size + 2 * kReach;  // cells per side of a neighbourhood
-constexpr double kRadius = 2.0;                 // cells
-constexpr std::size_t kFewest = 4;              // samples that make a plane
+constexpr int reach = 2;                      // cells around a sample that are searched
+constexpr int side = brick_size + 2 * reach;  // cells per side of a neighbourhood
+constexpr double radius = 2.0;                // cells
+constexpr std::size_t fewest = 4;             // samples that make a plane
 
 double sign_of(EdgeCode code) {
   return code.lower_end_inside() ? 1.0 : -1.0;
@@ -43,9 +43,9 @@ class Neighbourhood {
   template <typename Use>
   void around(const EdgeCode& code, const Use& use) const {
     const int k = static_cast<int>(code.k());
-    for (int i = static_cast<int>(code.i()); i <= static_cast<int>(code.i()) + 2 * kReach; ++i)
-      for (int j = static_cast<int>(code.j()); j <= static_cast<int>(code.j()) + 2 * kReach; ++j)
-        for (unsigned bits = rows_[i][j] >> k & ((2u << 2 * kReach) - 1); bits != 0; bits &= bits - 1) {
+    for (int i = static_cast<int>(code.i()); i <= static_cast<int>(code.i()) + 2 * reach; ++i)
+      for (int j = static_cast<int>(code.j()); j <= static_cast<int>(code.j()) + 2 * reach; ++j)
+        for (unsigned bits = rows_[i][j] >> k & ((2u << 2 * reach) - 1); bits != 0; bits &= bits - 1) {
           const Cell& cell = cells_[i][j][k + std::countr_zero(bits)];
           for (unsigned p = 0; p < cell.count; ++p) use(points_[cell.point[p]]);
         }
@@ -77,8 +77,8 @@ class Neighbourhood {
       int cell[3];
       bool near = true;
       for (int a = 0; a < 3; ++a) {
-        cell[a] = at[a] + step[a] * static_cast<int>(brick_size) + kReach;
-        near = near && cell[a] >= 0 && cell[a] < kSide;
+        cell[a] = at[a] + step[a] * static_cast<int>(brick_size) + reach;
+        near = near && cell[a] >= 0 && cell[a] < side;
       }
       if (!near) continue;
       std::uint16_t& row = rows_[cell[0]][cell[1]];
@@ -96,8 +96,8 @@ class Neighbourhood {
   const SampleSet& set_;
   const std::vector<std::uint64_t>& codes_;
   std::vector<Point> points_;
-  std::uint16_t rows_[kSide][kSide];
-  Cell cells_[kSide][kSide][kSide];
+  std::uint16_t rows_[side][side];
+  Cell cells_[side][side][side];
 };
 
 // Plane through the samples within kRadius, each counted the less the farther it is. Samples that cross the same axis
@@ -109,7 +109,7 @@ Vec3 fitted_normal(const Neighbourhood& near, const Vec3& at, EdgeCode code) {
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   near.around(code, [&](const Neighbourhood::Point& p) {
     const Vec3 d = p.at - at;
-    const double w = 1.0 - squared_norm(d) / (kRadius * kRadius);
+    const double w = 1.0 - squared_norm(d) / (radius * radius);
     if (w <= 0 || (p.code.axis() == code.axis() && p.code.lower_end_inside() != code.lower_end_inside())) return;
     outward[static_cast<int>(p.code.axis())] += w * sign_of(p.code);
     mean += w * d, sum += w, ++count;
@@ -117,7 +117,7 @@ Vec3 fitted_normal(const Neighbourhood& near, const Vec3& at, EdgeCode code) {
       for (int c = 0; c < 3; ++c) moments(r, c) += w * d[r] * d[c];
   });
   Vec3 normal = normalized(outward);
-  if (count >= kFewest) {
+  if (count >= fewest) {
     mean *= 1 / sum;
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 3; ++c) moments(r, c) = moments(r, c) / sum - mean[r] * mean[c];
@@ -139,11 +139,11 @@ namespace {
 
 /// @param wanted  of the samples whose normals are replaced, by their normals
 template <typename Wanted>
-void fit(SampleSet& set, const Run& run, const Wanted& wanted) {
+void fit(SampleSet& set, const ExecutionContext& context, const Wanted& wanted) {
   const double h = set.grid.spacing;
   std::vector<std::uint64_t> codes;
   for (const SampleBlock& b : set.blocks) codes.push_back(morton_code(b.brick[0], b.brick[1], b.brick[2]));
-  parallel_for(run, set.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, set.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
     Neighbourhood near(set, codes);
     for (std::size_t b = begin; b < end; ++b) {
       const SampleBlock& block = set.blocks[b];
@@ -162,12 +162,12 @@ void fit(SampleSet& set, const Run& run, const Wanted& wanted) {
 
 }  // namespace
 
-void fit_normals(SampleSet& set, const Run& run) {
-  fit(set, run, [](PackedNormal) { return true; });
+void fit_normals(SampleSet& set, const ExecutionContext& context) {
+  fit(set, context, [](PackedNormal) { return true; });
 }
 
-void fit_missing_normals(SampleSet& set, const Run& run) {
-  fit(set, run, [](PackedNormal n) { return n.bits == no_normal.bits; });
+void fit_missing_normals(SampleSet& set, const ExecutionContext& context) {
+  fit(set, context, [](PackedNormal n) { return n.bits == no_normal.bits; });
 }
 
 }  // namespace evenmesh

@@ -10,7 +10,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr double kLargest = largest_lattice_coordinate;
+constexpr double largest = largest_lattice_coordinate;
 
 std::size_t at(int axis) {
   return static_cast<std::size_t>(axis);
@@ -45,8 +45,8 @@ void choose_scale(Lattice& lattice, const Mesh& mesh, const Grid& grid, bool bou
   }
   if (outside && !bounded)
     throw InvalidInput("the mesh does not fit into the grid: make the grid from the mesh's bounds");
-  while (lattice.bits > 0 && std::ldexp(reach, lattice.bits) > kLargest) --lattice.bits;
-  if (std::ldexp(reach, lattice.bits) > kLargest)
+  while (lattice.bits > 0 && std::ldexp(reach, lattice.bits) > largest) --lattice.bits;
+  if (std::ldexp(reach, lattice.bits) > largest)
     throw InvalidInput("the mesh is too large for the bounds: enlarge them or lower the resolution");
   lattice.clipped = outside;
 }
@@ -67,9 +67,9 @@ std::uint64_t edge_value(std::uint64_t a, std::uint64_t b) {
 // The boundary of the sum of all triangles is zero exactly when every edge, by the places of its ends, is used as often
 // one way as the other. Summing a random antisymmetric function of the edges finds that out with an error of
 // probability 2^-64, without welding vertices or pairing edges.
-bool has_no_boundary(const Lattice& lattice, const Mesh& mesh, const Run& run) {
+bool has_no_boundary(const Lattice& lattice, const Mesh& mesh, const ExecutionContext& context) {
   std::vector<std::uint64_t> name(lattice.points.size());
-  parallel_for(run, name.size(), 8192, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, name.size(), 8192, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const LatticePoint& p = lattice.points[v];
       const std::uint64_t xy = std::uint64_t(std::uint32_t(p[0])) << 32 | std::uint32_t(p[1]);
@@ -77,7 +77,7 @@ bool has_no_boundary(const Lattice& lattice, const Mesh& mesh, const Run& run) {
     }
   });
   std::atomic<std::uint64_t> total{0};
-  parallel_for(run, mesh.triangles.size(), 16384, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, mesh.triangles.size(), 16384, [&](std::size_t begin, std::size_t end) {
     std::uint64_t sum = 0;
     for (std::size_t t = begin; t < end; ++t) {
       const std::uint64_t a = name[mesh.triangles[t][0]], b = name[mesh.triangles[t][1]],
@@ -106,7 +106,7 @@ void for_slabs(const Lattice& lattice, const Triangle& t, const Use& use) {
 }
 
 // Counting sort in two passes over fixed pieces of the mesh, so that the order does not depend on threads.
-void bin_triangles(Lattice& lattice, const Mesh& mesh, const Grid& grid, const Run& run) {
+void bin_triangles(Lattice& lattice, const Mesh& mesh, const Grid& grid, const ExecutionContext& context) {
   const std::size_t count = mesh.triangles.size(), pieces = std::clamp<std::size_t>(count / 8192, 1, 32);
   std::array<std::size_t, 3> slabs{}, offset{};
   std::size_t width = 0;
@@ -124,7 +124,7 @@ void bin_triangles(Lattice& lattice, const Mesh& mesh, const Grid& grid, const R
           use(static_cast<std::uint32_t>(t), axis, place[piece * width + offset[at(axis)] + s]);
       });
   };
-  parallel_tasks(run, pieces,
+  parallel_tasks(context, pieces,
                  [&](std::size_t piece) { for_piece(piece, [](std::uint32_t, int, std::uint32_t& n) { ++n; }); });
   for (int a = 0; a < 3; ++a) {
     SlabBins& bins = lattice.bins[at(a)];
@@ -139,16 +139,16 @@ void bin_triangles(Lattice& lattice, const Mesh& mesh, const Grid& grid, const R
     bins.begin.push_back(sum);
     bins.triangles.resize(sum);
   }
-  parallel_tasks(run, pieces, [&](std::size_t piece) {
+  parallel_tasks(context, pieces, [&](std::size_t piece) {
     for_piece(piece, [&](std::uint32_t t, int axis, std::uint32_t& n) { lattice.bins[at(axis)].triangles[n++] = t; });
   });
 }
 
 }  // namespace
 
-void check_mesh(const Mesh& mesh, const Run& run) {
+void check_mesh(const Mesh& mesh, const ExecutionContext& context) {
   const std::size_t count = mesh.vertices.size();
-  parallel_for(run, mesh.triangles.size(), 32768, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, mesh.triangles.size(), 32768, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (const std::uint32_t v : mesh.triangles[t]) {
         if (v >= count) throw InvalidInput("triangle " + std::to_string(t) + " refers to a vertex that does not exist");
@@ -158,28 +158,28 @@ void check_mesh(const Mesh& mesh, const Run& run) {
 }
 
 std::vector<LatticePoint> snap_vertices(const Mesh& mesh, const Vec3& origin, double spacing, int bits,
-                                        const Run& run) {
+                                        const ExecutionContext& context) {
   const double scale = std::ldexp(1.0 / spacing, bits);
   std::vector<LatticePoint> points(mesh.vertices.size());
-  parallel_for(run, mesh.vertices.size(), 8192, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, mesh.vertices.size(), 8192, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       for (int a = 0; a < 3; ++a) {
         const double c = (mesh.vertices[v][a] - origin[a]) * scale;
         // Only vertices without triangles can be out of range here; written so that NaN gives 0.
-        points[v][at(a)] = std::abs(c) <= kLargest ? static_cast<std::int32_t>(std::floor(c + 0.5)) : 0;
+        points[v][at(a)] = std::abs(c) <= largest ? static_cast<std::int32_t>(std::floor(c + 0.5)) : 0;
       }
   });
   return points;
 }
 
-Lattice make_lattice(const Mesh& mesh, const Grid& grid, const Box& bounds, const Run& run) {
+Lattice make_lattice(const Mesh& mesh, const Grid& grid, const Box& bounds, const ExecutionContext& context) {
   Lattice lattice;
-  check_mesh(mesh, run);
+  check_mesh(mesh, context);
   set_range(lattice, grid, bounds);
   choose_scale(lattice, mesh, grid, !bounds.empty());
-  lattice.points = snap_vertices(mesh, grid.origin, grid.spacing, lattice.bits, run);
-  lattice.closed = has_no_boundary(lattice, mesh, run);
-  bin_triangles(lattice, mesh, grid, run);
+  lattice.points = snap_vertices(mesh, grid.origin, grid.spacing, lattice.bits, context);
+  lattice.closed = has_no_boundary(lattice, mesh, context);
+  bin_triangles(lattice, mesh, grid, context);
   return lattice;
 }
 

@@ -17,10 +17,11 @@ using LatticePoint = std::array<std::int32_t, 3>;
 inline constexpr double largest_lattice_coordinate = 759250124.0;
 
 /// @throws InvalidInput  a triangle's index is out of range, or a coordinate that it uses is not finite
-void check_mesh(const Mesh& mesh, const Run& run);
+void check_mesh(const Mesh& mesh, const ExecutionContext& context);
 
 /// Vertices in units of 2^-bits · spacing from `origin`, rounded to nearest. What is out of range becomes 0.
-std::vector<LatticePoint> snap_vertices(const Mesh& mesh, const Vec3& origin, double spacing, int bits, const Run& run);
+std::vector<LatticePoint> snap_vertices(const Mesh& mesh, const Vec3& origin, double spacing, int bits,
+                                        const ExecutionContext& context);
 
 /// Triangles per slab, CSR.
 struct SlabBins {
@@ -44,6 +45,6 @@ struct Lattice {
 /// Snaps, checks and bins. Empty bounds: those of the grid, less its outermost cells.
 /// @throws InvalidInput  an index is out of range, a coordinate is not finite, the mesh does not fit the grid and its
 /// bounds
-Lattice make_lattice(const Mesh& mesh, const Grid& grid, const Box& bounds, const Run& run);
+Lattice make_lattice(const Mesh& mesh, const Grid& grid, const Box& bounds, const ExecutionContext& context);
 
 }  // namespace evenmesh

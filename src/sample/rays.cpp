@@ -75,8 +75,8 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
     const bool changed = is_inside() != inside;
     counts.unresolved += changes - (changed ? 1 : 0);
     if (!changed) continue;
-    out.push_back({hits[last].source, hits[last].t, cell, !inside, hits[last].made});
-    counts.capped = counts.capped || hits[last].made;
+    out.push_back({hits[last].source, hits[last].t, cell, !inside, hits[last].synthetic});
+    counts.capped = counts.capped || hits[last].synthetic;
   }
 }
 

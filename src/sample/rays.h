@@ -15,8 +15,8 @@ struct RayHit {
   std::uint32_t source = 0;
   float t = 0;
   std::uint16_t cell = 0;
-  std::int8_t step = 0;  ///< change of the winding number along the ray, ±1
-  bool made = false;     ///< moved onto the bounds
+  std::int8_t step = 0;    ///< change of the winding number along the ray, ±1
+  bool synthetic = false;  ///< moved onto the bounds
 };
 
 /// What resolving rays had to do.

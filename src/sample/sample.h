@@ -13,6 +13,6 @@ namespace evenmesh {
 /// solid; same bits for any number of threads. Cost: O(samples + triangles), or O(samples) evaluations of a field.
 /// @throws UnusableInput  when no grid edge crosses the surface
 /// Based on [Raster2Mesh §4.1]; edge rules by simulation of simplicity (Edelsbrunner, Mücke 1990).
-SampleSet sample_shape(const Shape& shape, const Grid& grid, Run& run = Run::silent());
+SampleSet sample_shape(const Shape& shape, const Grid& grid, ExecutionContext& context = ExecutionContext::silent());
 
 }  // namespace evenmesh

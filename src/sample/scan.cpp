@@ -201,11 +201,11 @@ class SlabScanner {
     for (int p = from; p < to; ++p) {
       double t = 0;
       int cell = plane_.cell(p, q, base, t);
-      bool made = false;
-      if (lattice_.clipped) made = move_onto_bounds(cell, t);
+      bool synthetic = false;
+      if (lattice_.clipped) synthetic = move_onto_bounds(cell, t);
       const std::uint32_t ray = static_cast<std::uint32_t>(p) * brick_size + static_cast<std::uint32_t>(q) % brick_size;
       ++scratch_.count[ray];
-      scratch_.hits.push_back({ray, {source, in_cell(t), static_cast<std::uint16_t>(cell), step, made}});
+      scratch_.hits.push_back({ray, {source, in_cell(t), static_cast<std::uint16_t>(cell), step, synthetic}});
     }
   }
 
@@ -246,7 +246,7 @@ void sort_by_ray(Scratch& scratch, std::uint32_t first, std::size_t rays, std::v
 std::vector<DexelCrossing> as_crossings(std::span<const RayHit> hits) {
   std::vector<DexelCrossing> raw;
   raw.reserve(hits.size());
-  for (const RayHit& h : hits) raw.push_back({h.source, h.t, h.cell, h.step > 0, h.made});
+  for (const RayHit& h : hits) raw.push_back({h.source, h.t, h.cell, h.step > 0, h.synthetic});
   return raw;
 }
 
@@ -305,12 +305,12 @@ std::size_t TriDexel::size() const {
 namespace {
 
 /// @param raw  receives all hits of a mesh that is not closed
-TriDexel scan(const Mesh& mesh, const Grid& grid, Run& run, const Box& bounds, Winding winding,
+TriDexel scan(const Mesh& mesh, const Grid& grid, ExecutionContext& context, const Box& bounds, Winding winding,
               std::array<DexelAxis, 3>& raw) {
   TriDexel solid;
   solid.grid = grid;
   std::vector<std::pair<int, std::size_t>> tasks;
-  const Lattice lattice = make_lattice(mesh, grid, bounds, run);
+  const Lattice lattice = make_lattice(mesh, grid, bounds, context);
   solid.closed = lattice.closed;
   for (int a = 0; a < 3; ++a) {
     const std::size_t slabs = lattice.bins[static_cast<std::size_t>(a)].begin.size() - 1;
@@ -320,7 +320,7 @@ TriDexel scan(const Mesh& mesh, const Grid& grid, Run& run, const Box& bounds, W
   }
   std::vector<RayCounts> counts(tasks.size());
   const std::size_t rays = std::size_t{*std::max_element(grid.size.begin(), grid.size.end())} * brick_size;
-  parallel_for(run, tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
     Scratch scratch;
     scratch.count.resize(rays);
     for (std::size_t i = begin; i < end; ++i) {
@@ -339,17 +339,17 @@ TriDexel scan(const Mesh& mesh, const Grid& grid, Run& run, const Box& bounds, W
 
 }  // namespace
 
-TriDexel scan_rays(const Mesh& mesh, const Grid& grid, Run& run, Winding winding) {
+TriDexel scan_rays(const Mesh& mesh, const Grid& grid, ExecutionContext& context, Winding winding) {
   std::array<DexelAxis, 3> raw;
-  return scan(mesh, grid, run, {}, winding, raw);
+  return scan(mesh, grid, context, {}, winding, raw);
 }
 
-TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, Run& run, const Box& bounds, Winding winding) {
+TriDexel scan_mesh(const Mesh& mesh, const Grid& grid, ExecutionContext& context, const Box& bounds, Winding winding) {
   std::array<DexelAxis, 3> raw;
-  TriDexel solid = scan(mesh, grid, run, bounds, winding, raw);
+  TriDexel solid = scan(mesh, grid, context, bounds, winding, raw);
   if (!solid.closed) {
-    const Witnesses witnesses(mesh, grid.spacing, winding, run);
-    vote(solid, raw, &witnesses, run);
+    const ExtraDirections extra_directions(mesh, grid.spacing, winding, context);
+    vote(solid, raw, &extra_directions, context);
   }
   return solid;
 }

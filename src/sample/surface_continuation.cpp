@@ -59,13 +59,14 @@ std::uint64_t code_of(const SampleBlock& block) {
 
 }  // namespace
 
-std::vector<GridCube> torn_bricks(std::span<const FieldPart> parts, std::size_t fresh, const Run& run) {
+std::vector<GridCube> surface_continuation(std::span<const FieldPart> parts, std::size_t fresh,
+                                           const ExecutionContext& context) {
   std::vector<std::uint64_t> known;
   for (const FieldPart& part : parts)
     for (const SampleBlock& block : part.blocks) known.push_back(code_of(block));
   std::sort(known.begin(), known.end());
   std::vector<std::vector<std::uint64_t>> found(parts.size());
-  parallel_for(run, parts.size() - fresh, 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, parts.size() - fresh, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = fresh + begin; p < fresh + end; ++p)
       for (const SampleBlock& block : parts[p].blocks) {
         const BrickSigns signs(parts[p], block);

@@ -13,7 +13,7 @@ namespace {
 
 using Word = std::uint64_t;
 
-constexpr std::uint32_t kLayers = 64;  // layers per task
+constexpr std::uint32_t layers_per_task = 64;
 
 // The bits of one layer of grid points, rows along x.
 struct Layer {
@@ -22,14 +22,14 @@ struct Layer {
 };
 
 // Who is asked besides the three directions.
-struct Electorate {
+struct Voters {
   const std::array<DexelAxis, 3>& raw;
-  const Witnesses* witnesses = nullptr;
+  const ExtraDirections* extra_directions = nullptr;
   double rounding = 0;  // cells
 };
 
 // What three directions and their majority say of one layer.
-struct Opinions {
+struct AxisOccupancy {
   Layer axis[3], majority;
   std::size_t disputed = 0;  // points, less those settled by rounding
 };
@@ -53,9 +53,9 @@ struct Votes {
 // The layers [first, last] of a solid.
 class LayerVoter {
  public:
-  LayerVoter(const TriDexel& solid, const Electorate& electorate, std::uint32_t first, std::uint32_t last)
+  LayerVoter(const TriDexel& solid, const Voters& voters, std::uint32_t first, std::uint32_t last)
       : solid_(solid),
-        electorate_(electorate),
+        voters_(voters),
         nx_(solid.grid.size[0]),
         ny_(solid.grid.size[1]),
         width_((nx_ + 63) / 64),
@@ -66,7 +66,7 @@ class LayerVoter {
   }
 
   // Reads layer k; k goes up by one from call to call.
-  void read(std::uint32_t k, Opinions& o) {
+  void read(std::uint32_t k, AxisOccupancy& o) {
     for (Layer& layer : o.axis) layer.clear(width_ * ny_);
     for (std::uint32_t y = 0; y < ny_; ++y) read_x(solid_.axes[0].ray(y, k), &o.axis[0].bits[y * width_]);
     read_y(k, o.axis[1]);
@@ -89,7 +89,7 @@ class LayerVoter {
   }
 
   // Edits of the edges within a layer.
-  void edit_within(std::uint32_t k, const Opinions& o, Edits& edits) const {
+  void edit_within(std::uint32_t k, const AxisOccupancy& o, Edits& edits) const {
     const auto overruled = [&](std::size_t axis, std::size_t w) { return o.axis[axis].bits[w] ^ o.majority.bits[w]; };
     for (std::uint32_t y = 0; y < ny_; ++y)
       for (std::uint32_t i = 0; i < width_; ++i) {
@@ -111,7 +111,7 @@ class LayerVoter {
   }
 
   // Edits of the edges from layer k up to the next.
-  void edit_between(std::uint32_t k, const Opinions& low, const Opinions& high, Edits& edits) const {
+  void edit_between(std::uint32_t k, const AxisOccupancy& low, const AxisOccupancy& high, Edits& edits) const {
     for (std::size_t w = 0; w < width_ * ny_; ++w)
       for_edits(low.axis[2].bits[w], high.axis[2].bits[w], low.majority.bits[w], high.majority.bits[w],
                 [&](std::uint32_t bit, bool crosses, bool enters) {
@@ -162,37 +162,37 @@ class LayerVoter {
 
   // Asks the witnesses about a point in dispute.
   void settle(Word& word, std::size_t w, int bit, std::uint32_t k, int own) const {
-    if (electorate_.witnesses == nullptr) return;  // the majority of the three
+    if (voters_.extra_directions == nullptr) return;  // the majority of the three
     const double x = static_cast<double>(64 * (w % width_)) + bit, y = static_cast<double>(w / width_);
     // The grid's own rays meet the point itself: three votes each.
-    const int votes = 3 * own + electorate_.witnesses->inside(solid_.grid.point(x, y, k));
-    const bool inside = 2 * votes > 3 * 3 + Witnesses::directions;
+    const int votes = 3 * own + voters_.extra_directions->inside(solid_.grid.point(x, y, k));
+    const bool inside = 2 * votes > 3 * 3 + ExtraDirections::directions;
     word = inside ? word | Word{1} << bit : word & ~(Word{1} << bit);
   }
 
   // Whether a ray has a crossing so near to the point that rounding may have moved it to the other side.
   bool is_rounding(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
-    if (!(electorate_.rounding > 0)) return false;
+    if (!(voters_.rounding > 0)) return false;
     const std::array<std::uint32_t, 3> at{x, y, z};
     for (std::size_t a = 0; a < 3; ++a) {
       const auto p = static_cast<std::size_t>(dexel_p_axis[a]), q = static_cast<std::size_t>(dexel_q_axis[a]);
-      for (const DexelCrossing& hit : electorate_.raw[a].ray(at[p], at[q]))
-        if (std::abs(hit.cell + double(hit.t) - at[a]) <= electorate_.rounding) return true;
+      for (const DexelCrossing& hit : voters_.raw[a].ray(at[p], at[q]))
+        if (std::abs(hit.cell + double(hit.t) - at[a]) <= voters_.rounding) return true;
     }
     return false;
   }
 
   const TriDexel& solid_;
-  const Electorate& electorate_;
+  const Voters& voters_;
   std::uint32_t nx_, ny_, width_, first_;
   std::vector<Layer> along_z_;
 };
 
-Votes count_votes(const TriDexel& solid, const Electorate& electorate, std::uint32_t first, std::uint32_t end) {
+Votes count_votes(const TriDexel& solid, const Voters& voters, std::uint32_t first, std::uint32_t end) {
   Votes votes;
   const std::uint32_t top = solid.grid.size[2] - 1, last = std::min(end, top);
-  LayerVoter voter(solid, electorate, first, last);
-  Opinions low, high;
+  LayerVoter voter(solid, voters, first, last);
+  AxisOccupancy low, high;
   voter.read(first, low);
   for (std::uint32_t k = first; k < end; ++k) {
     votes.disagreements += low.disputed;
@@ -208,8 +208,7 @@ Votes count_votes(const TriDexel& solid, const Electorate& electorate, std::uint
 // Fills in where new crossings lie.
 class Rebuilder {
  public:
-  Rebuilder(TriDexel& solid, const Electorate& electorate)
-      : solid_(solid), raw_(electorate.raw), rounding_(electorate.rounding) {}
+  Rebuilder(TriDexel& solid, const Voters& voters) : solid_(solid), raw_(voters.raw), rounding_(voters.rounding) {}
 
   // Applies the edits of one slab, sorted by ray and cell.
   void apply(std::size_t axis, std::size_t index, std::span<const Edit> edits) {
@@ -246,11 +245,11 @@ class Rebuilder {
   // A hit that was found on the edge, or so near to it that rounding put it there, else its middle.
   DexelCrossing new_crossing(std::size_t axis, const Edit& edit) const {
     for (const DexelCrossing& hit : raw_[axis].ray(edit.p, edit.q))
-      if (hit.cell == edit.cell) return {hit.source, hit.t, edit.cell, edit.enters, hit.made};
+      if (hit.cell == edit.cell) return {hit.source, hit.t, edit.cell, edit.enters, hit.synthetic};
     for (const DexelCrossing& hit : raw_[axis].ray(edit.p, edit.q)) {
       const double t = hit.cell + double(hit.t) - edit.cell;
       if (rounding_ > 0 && t >= -rounding_ && t <= 1 + rounding_)
-        return {hit.source, t < 0.5 ? 0.0f : 0x1.fffffep-1f, edit.cell, edit.enters, hit.made};
+        return {hit.source, t < 0.5 ? 0.0f : 0x1.fffffep-1f, edit.cell, edit.enters, hit.synthetic};
     }
     return {nearest_source(axis, edit), 0.5f, edit.cell, edit.enters, true};
   }
@@ -278,24 +277,24 @@ class Rebuilder {
 
 }  // namespace
 
-void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const Witnesses* witnesses, const Run& run,
-          double rounding) {
-  const Electorate electorate{raw, witnesses, rounding};
+void vote(TriDexel& solid, const std::array<DexelAxis, 3>& raw, const ExtraDirections* extra_directions,
+          const ExecutionContext& context, double rounding) {
+  const Voters voters{raw, extra_directions, rounding};
   const std::uint32_t layers = solid.grid.size[2];
-  std::vector<Votes> votes((layers + kLayers - 1) / kLayers);
-  parallel_tasks(run, votes.size(), [&](std::size_t i) {
-    const auto first = static_cast<std::uint32_t>(i) * kLayers;
-    votes[i] = count_votes(solid, electorate, first, std::min(first + kLayers, layers));
+  std::vector<Votes> votes((layers + layers_per_task - 1) / layers_per_task);
+  parallel_tasks(context, votes.size(), [&](std::size_t i) {
+    const auto first = static_cast<std::uint32_t>(i) * layers_per_task;
+    votes[i] = count_votes(solid, voters, first, std::min(first + layers_per_task, layers));
   });
   Edits edits;
   for (Votes& v : votes) {
     solid.disagreements += v.disagreements;
     for (std::size_t a = 0; a < 3; ++a) edits[a].insert(edits[a].end(), v.edits[a].begin(), v.edits[a].end());
   }
-  parallel_tasks(run, 3, [&](std::size_t axis) {
+  parallel_tasks(context, 3, [&](std::size_t axis) {
     std::vector<Edit>& all = edits[axis];
     std::sort(all.begin(), all.end(), [](const Edit& a, const Edit& b) { return a.key() < b.key(); });
-    Rebuilder rebuilder(solid, electorate);
+    Rebuilder rebuilder(solid, voters);
     for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
       const std::size_t slab = all[begin].q / brick_size;
       while (end < all.size() && all[end].q / brick_size == slab) ++end;

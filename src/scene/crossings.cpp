@@ -12,8 +12,8 @@
 namespace evenmesh {
 namespace {
 
-constexpr double most_work = 3e8;
-constexpr std::size_t most_edges = 4'000'000;  // after cutting
+constexpr double max_work = 3e8;
+constexpr std::size_t max_edges = 4'000'000;  // after cutting
 constexpr std::uint32_t none = 0xffffffffu;
 
 [[noreturn]] void refuse() {
@@ -69,7 +69,7 @@ class Pairs {
     }
     const std::array work{overlaps(spans_[0]), overlaps(spans_[1])};
     axis_ = work[1] < work[0] ? 1 : 0;
-    if (work[axis_] > most_work) refuse();
+    if (work[axis_] > max_work) refuse();
   }
 
   /// @param visit  of two edges; false ends it
@@ -147,9 +147,9 @@ class Cutter {
   }
 
   std::vector<Edge> run() {
-    constexpr int most_rounds = 30;  // rounded crossings move edges by so little that few cross anew
+    constexpr int max_rounds = 30;  // rounded crossings move edges by so little that few cross anew
     for (int round = 0; cut(); ++round)
-      if (round == most_rounds) throw UnusableInput("crosses itself where it nearly touches; simplify the polygon");
+      if (round == max_rounds) throw UnusableInput("crosses itself where it nearly touches; simplify the polygon");
     return std::move(edges_);
   }
 
@@ -168,7 +168,7 @@ class Cutter {
         const std::uint32_t p = points_.number(crossing(edges_[i], edges_[j]));
         cuts[i].push_back(p), cuts[j].push_back(p), count += 2;
       }
-      if (count > most_edges) refuse();
+      if (count > max_edges) refuse();
       return true;
     });
     std::vector<Edge> pieces;
@@ -297,7 +297,7 @@ class Walker {
     double work = 0;
     for (std::uint32_t first = 0; first < edges_.size(); ++first) {
       if (known[first]) continue;
-      if ((work += static_cast<double>(edges_.size())) > most_work) refuse();
+      if ((work += static_cast<double>(edges_.size())) > max_work) refuse();
       below_[first] = winding_below(edges_[first]);
       known[first] = true;
       open.push_back(first);

@@ -8,7 +8,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr double most_pieces = 1e6;  // of a circle, or along an extrusion
+constexpr double max_pieces = 1e6;  // of a circle, or along an extrusion
 
 bool is_number(const CsgValue* value) {
   return value != nullptr && value->kind == CsgValue::Kind::number;
@@ -31,7 +31,7 @@ double CsgBodies::number(const CsgNode& node, const char* name, std::size_t posi
 
 void CsgBodies::spend(const CsgNode& node, std::uint64_t triangles) const {
   try {
-    workshop_.spend(triangles);
+    loader_.spend(triangles);
   } catch (const UnusableInput& error) {
     fail_in_csg(source_, node.at, error.what());
   }
@@ -46,7 +46,7 @@ Roundness CsgBodies::roundness(const CsgNode& node) const {
 
 std::uint64_t CsgBodies::fragments(const CsgNode& node, double radius) const {
   const double count = roundness(node).fragments(radius);
-  if (!(count <= most_pieces))
+  if (!(count <= max_pieces))
     fail_in_csg(source_, node.at, "asks for more than 1,000,000 pieces of a circle; lower $fn");
   return static_cast<std::uint64_t>(count);
 }
@@ -213,7 +213,7 @@ std::optional<LinearExtrusion> CsgBodies::linear_extrusion(const CsgNode& node, 
   }
   const double given = number(node, "slices", 99, 0);
   const double slices = given >= 1 ? given : slices_of(how, roundness(node), outline);
-  if (!(slices <= most_pieces)) fail_in_csg(source_, node.at, "asks for more than 1,000,000 slices");
+  if (!(slices <= max_pieces)) fail_in_csg(source_, node.at, "asks for more than 1,000,000 slices");
   how.slices = static_cast<std::uint64_t>(slices);
   if (!(how.up.z > 0)) return {};
   return how;

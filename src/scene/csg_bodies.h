@@ -13,7 +13,7 @@ namespace evenmesh {
 /// Reads the arguments of nodes; complains with line and column.
 class CsgBodies {
  public:
-  CsgBodies(const Source& source, Workshop& workshop) : source_(source), workshop_(workshop) {}
+  CsgBodies(const Source& source, SceneLoader& loader) : source_(source), loader_(loader) {}
 
   static bool is_solid(std::string_view name);  ///< cube, sphere, cylinder, polyhedron
   static bool is_flat(std::string_view name);   ///< square, circle, polygon
@@ -44,7 +44,7 @@ class CsgBodies {
   void spend(const CsgNode& node, std::uint64_t triangles) const;
 
   const Source& source_;
-  Workshop& workshop_;
+  SceneLoader& loader_;
 };
 
 }  // namespace evenmesh

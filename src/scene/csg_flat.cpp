@@ -28,7 +28,7 @@ Outline moved(Outline outline, const Affine& motion) {
 }  // namespace
 
 Outline CsgFlat::node(const CsgNode& n, const std::optional<Affine>& motion) const {
-  workshop_.run().throw_if_cancelled();
+  loader_.run().throw_if_cancelled();
   if (is_csg_group(n.name)) return united(n.children, motion);
   if (n.name == "difference") return difference(n, motion);
   if (n.name == "intersection") return intersection(n, motion);

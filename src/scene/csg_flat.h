@@ -16,8 +16,8 @@ namespace evenmesh {
 /// Reads what stands within an extrusion; complains with line and column.
 class CsgFlat {
  public:
-  CsgFlat(const Source& source, Workshop& workshop, const CsgBodies& bodies)
-      : source_(source), workshop_(workshop), bodies_(bodies) {}
+  CsgFlat(const Source& source, SceneLoader& loader, const CsgBodies& bodies)
+      : source_(source), loader_(loader), bodies_(bodies) {}
 
   /// Without contours where nothing is left.
   Outline united(const std::vector<CsgNode>& nodes, const std::optional<Affine>& motion = {}) const;
@@ -29,7 +29,7 @@ class CsgFlat {
   Outline multiplied(const CsgNode& n, const std::optional<Affine>& motion) const;
 
   const Source& source_;
-  Workshop& workshop_;
+  SceneLoader& loader_;
   const CsgBodies& bodies_;
 };
 

@@ -29,8 +29,8 @@ bool apart(const Box& a, const Box& b) {
 
 class CsgReader {
  public:
-  CsgReader(const Source& source, Workshop& workshop)
-      : source_(source), workshop_(workshop), bodies_(source, workshop), flat_(source, workshop, bodies_) {}
+  CsgReader(const Source& source, SceneLoader& loader)
+      : source_(source), loader_(loader), bodies_(source, loader), flat_(source, loader, bodies_) {}
 
   Shape read(const std::vector<CsgNode>& nodes) const {
     const CsgNode* only = marked(nodes);
@@ -54,7 +54,7 @@ class CsgReader {
   }
 
   Solid node(const CsgNode& n, const Placement& around) const {
-    workshop_.run().throw_if_cancelled();
+    loader_.run().throw_if_cancelled();
     if (is_csg_group(n.name)) return united(n.children, around);
     if (n.name == "difference") return difference(n, around);
     if (n.name == "intersection") return intersection(n, around);
@@ -73,7 +73,7 @@ class CsgReader {
     if (mesh.triangles.empty()) return {};
     return in_csg(source_, n, [&] {
       const Shape shape = shape_from_mesh(std::move(mesh), n.name);
-      return workshop_.placed(shape, placement ? &*placement : nullptr);
+      return loader_.placed(shape, placement ? &*placement : nullptr);
     });
   }
 
@@ -174,19 +174,19 @@ class CsgReader {
     const CsgValue* file = csg_argument(n, "file", 0);
     if (file == nullptr || file->kind != CsgValue::Kind::text) fail_in_csg(source_, n.at, "import needs a file");
     return in_csg(source_, n,
-                  [&] { return workshop_.placed(workshop_.mesh_file(file->text), around ? &*around : nullptr); });
+                  [&] { return loader_.placed(loader_.mesh_file(file->text), around ? &*around : nullptr); });
   }
 
   const Source& source_;
-  Workshop& workshop_;
+  SceneLoader& loader_;
   CsgBodies bodies_;
   CsgFlat flat_;
 };
 
 }  // namespace
 
-Shape read_csg_scene(const Source& source, Workshop& workshop, const SceneLimits& limits) {
-  return CsgReader(source, workshop).read(parse_csg(source, limits.depth));
+Shape read_csg_scene(const Source& source, SceneLoader& loader, const SceneLimits& limits) {
+  return CsgReader(source, loader).read(parse_csg(source, limits.depth));
 }
 
 }  // namespace evenmesh

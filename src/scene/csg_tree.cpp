@@ -79,7 +79,7 @@ class Parser {
       skip();
       if (p_ == source_.end() || *p_ == '}') return nodes;
       if (take(';')) continue;
-      if (nodes.size() % 1024 == 0) source_.run->throw_if_cancelled();
+      if (nodes.size() % 1024 == 0) source_.context->throw_if_cancelled();
       nodes.push_back(statement(depth));
     }
   }
@@ -159,7 +159,7 @@ class Parser {
     if (take(']')) return;
     do {
       made.list.push_back(value(depth + 1));
-      if (made.list.size() % 4096 == 0) source_.run->throw_if_cancelled();
+      if (made.list.size() % 4096 == 0) source_.context->throw_if_cancelled();
     } while (take(','));
     need(']', "',' or ']' in the list");
   }

@@ -21,8 +21,8 @@ namespace {
 
 class JsonReader {
  public:
-  JsonReader(const Source& source, Workshop& workshop, const SceneLimits& limits)
-      : source_(source), workshop_(workshop), limits_(limits) {}
+  JsonReader(const Source& source, SceneLoader& loader, const SceneLimits& limits)
+      : source_(source), loader_(loader), limits_(limits) {}
 
   Shape read() const {
     // A node takes three levels at most: itself, an array or "transform", a list in it; and a few for the last.
@@ -116,7 +116,7 @@ class JsonReader {
   }
 
   Shape node(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
-    workshop_.run().throw_if_cancelled();
+    loader_.run().throw_if_cancelled();
     if (depth >= limits_.depth) {
       place.refuse(fmt::format("is nested too deeply; a scene may have {} nodes within each other", limits_.depth));
     }
@@ -184,7 +184,7 @@ class JsonReader {
     const JsonPlace distance = place.member(key);
     const double value = distance.number();
     Shape shape = inner(place, key, nullptr, depth);
-    return at(distance, [&] { return workshop_.placed(make(std::move(shape), value), placement); });
+    return at(distance, [&] { return loader_.placed(make(std::move(shape), value), placement); });
   }
 
   Shape read_offset(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
@@ -209,19 +209,19 @@ class JsonReader {
   Shape read_mesh_node(const JsonPlace& place, const Affine* placement, std::size_t) const {
     const JsonPlace given = place.member("mesh");
     const std::string name = given.text();
-    return at(given, [&] { return workshop_.placed(workshop_.mesh_file(name), placement); });
+    return at(given, [&] { return loader_.placed(loader_.mesh_file(name), placement); });
   }
 
   Shape read_points_node(const JsonPlace& place, const Affine* placement, std::size_t) const {
     const JsonPlace given = place.member("points");
     const std::string name = given.text();
-    return at(given, [&] { return workshop_.placed(workshop_.point_file(name), placement); });
+    return at(given, [&] { return loader_.placed(loader_.point_file(name), placement); });
   }
 
   Shape read_gallery(const JsonPlace& place, const Affine* placement, std::size_t) const {
     const JsonPlace given = place.member("gallery");
     const std::string name = given.text();
-    return at(given, [&] { return workshop_.placed(gallery_shape(name), placement); });
+    return at(given, [&] { return loader_.placed(gallery_shape(name), placement); });
   }
 
   /// Empty where none are given.
@@ -243,7 +243,7 @@ class JsonReader {
     }
     const JsonPlace expression = place.member("implicit");
     const std::string text = expression.text();
-    return at(expression, [&] { return workshop_.placed(shape_from_expression(text, parameters, bounds), placement); });
+    return at(expression, [&] { return loader_.placed(shape_from_expression(text, parameters, bounds), placement); });
   }
 
   /// Values of uniforms and macros: numbers, lists of numbers, or texts.
@@ -274,7 +274,7 @@ class JsonReader {
     if (place.has("parameters")) options.definitions = definitions_of(place.member("parameters"));
     const JsonPlace given = place.member("glsl");
     const std::string name = given.text();
-    return at(given, [&] { return workshop_.placed(workshop_.shader_file(name, options), placement); });
+    return at(given, [&] { return loader_.placed(loader_.shader_file(name, options), placement); });
   }
   /// What two shaders draw; "default" stands for a built-in one.
   Shape read_raster_node(const JsonPlace& place, const Affine* placement, std::size_t) const {
@@ -289,7 +289,7 @@ class JsonReader {
     if (place.has("geometry")) {
       const JsonPlace mesh = place.member("geometry");
       const std::string name = mesh.text();
-      at(mesh, [&] { options.geometry = *workshop_.mesh_file(name).mesh(); });
+      at(mesh, [&] { options.geometry = *loader_.mesh_file(name).mesh(); });
     } else {
       const JsonPlace count = place.member("vertices");
       const double number = count.number();
@@ -298,16 +298,16 @@ class JsonReader {
       options.vertex_count = static_cast<std::size_t>(number);
     }
     const std::string vertex = given.element(0).text(), fragment = given.element(1).text();
-    return at(given, [&] { return workshop_.placed(workshop_.raster_files(vertex, fragment, options), placement); });
+    return at(given, [&] { return loader_.placed(loader_.raster_files(vertex, fragment, options), placement); });
   }
   Shape read_dexel_node(const JsonPlace& place, const Affine* placement, std::size_t) const {
     const JsonPlace given = place.member("dexels");
     const std::string name = given.text();
-    return at(given, [&] { return workshop_.placed(workshop_.dexel_file(name), placement); });
+    return at(given, [&] { return loader_.placed(loader_.dexel_file(name), placement); });
   }
 
   const Source& source_;
-  Workshop& workshop_;
+  SceneLoader& loader_;
   const SceneLimits& limits_;
 };
 
@@ -333,8 +333,8 @@ const std::vector<JsonReader::Kind>& JsonReader::kinds() {
 
 }  // namespace
 
-Shape read_json_scene(const Source& source, Workshop& workshop, const SceneLimits& limits) {
-  return JsonReader(source, workshop, limits).read();
+Shape read_json_scene(const Source& source, SceneLoader& loader, const SceneLimits& limits) {
+  return JsonReader(source, loader, limits).read();
 }
 
 }  // namespace evenmesh

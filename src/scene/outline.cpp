@@ -259,8 +259,8 @@ std::vector<Triangle> fans(const Outline& outline) {
 }  // namespace
 
 std::vector<Triangle> fill(const Outline& outline) {
-  constexpr std::size_t most_contours = 2000;  // each is compared with each
-  if (outline.contours.size() > most_contours) return fans(outline);
+  constexpr std::size_t max_contours = 2000;  // each is compared with each
+  if (outline.contours.size() > max_contours) return fans(outline);
   EarClipper clipper(outline);
   return clipper.run(outline) ? clipper.take() : fans(outline);
 }

@@ -48,25 +48,25 @@ bool is_scene(std::string_view name, std::string_view first_bytes) {
   return bytes.starts_with('{') && format_of_name(name) != MeshFormat::glb;
 }
 
-Shape parse_scene(std::string_view bytes, std::string_view name, const fs::path& folder, Run& run,
+Shape parse_scene(std::string_view bytes, std::string_view name, const fs::path& folder, ExecutionContext& context,
                   const SceneLimits& limits) {
   if (bytes.size() > limits.bytes) refuse_size(name, bytes.size(), limits.bytes);
-  const Source source{without_byte_order_mark(bytes), name, &run};
+  const Source source{without_byte_order_mark(bytes), name, &context};
   if (source.bytes.empty()) fail(source, "is empty; export it again");
   if (has_extension(name, ".scad")) {
     fail(source, "is a program of OpenSCAD, which has to be evaluated first: openscad -o x.csg x.scad");
   }
   const bool csg = has_extension(name, ".csg") || (!has_extension(name, ".json") && begins_like_csg(source.bytes));
   try {
-    Workshop workshop(folder, limits, run);
-    return csg ? read_csg_scene(source, workshop, limits) : read_json_scene(source, workshop, limits);
+    SceneLoader loader(folder, limits, context);
+    return csg ? read_csg_scene(source, loader, limits) : read_json_scene(source, loader, limits);
   } catch (const std::bad_alloc&) {
     fail(source, "does not fit into the memory; reduce it or use a larger machine");
   }
 }
 
-Shape read_scene(const fs::path& path, Run& run) {
-  run.throw_if_cancelled();
+Shape read_scene(const fs::path& path, ExecutionContext& context) {
+  context.throw_if_cancelled();
   const std::string name = name_of_input(path);
   const SceneLimits limits;
   std::error_code unknown;  // of pipes; they are measured when they are read
@@ -75,7 +75,7 @@ Shape read_scene(const fs::path& path, Run& run) {
     if (!unknown && bytes > limits.bytes) refuse_size(name, bytes, limits.bytes);
   }
   const FileBytes bytes = load_file(path);
-  return parse_scene(bytes.view(), name, path == "-" ? fs::path() : path.parent_path(), run, limits);
+  return parse_scene(bytes.view(), name, path == "-" ? fs::path() : path.parent_path(), context, limits);
 }
 
 Shape read_glsl(const fs::path& path, const GlslOptions& options) {

@@ -24,7 +24,7 @@ std::string shown(const fs::path& path) {
 
 }  // namespace
 
-fs::path Workshop::file(const std::string& name) const {
+fs::path SceneLoader::file(const std::string& name) const {
   if (name.empty() || name.find('\0') != std::string::npos) throw UnusableInput("needs the name of a file");
   const fs::path path = (folder_ / name).lexically_normal();
   std::error_code error;
@@ -38,52 +38,52 @@ fs::path Workshop::file(const std::string& name) const {
 }
 
 template <typename Read>
-Shape Workshop::once(std::map<fs::path, Shape>& known, const std::string& name, const Read& read) {
+Shape SceneLoader::once(std::map<fs::path, Shape>& known, const std::string& name, const Read& read) {
   const fs::path path = file(name);
   auto found = known.find(path);
   if (found == known.end()) found = known.emplace(path, read(path, path.filename().string())).first;
   return found->second;
 }
 
-Shape Workshop::mesh_file(const std::string& name) {
+Shape SceneLoader::mesh_file(const std::string& name) {
   return once(meshes_, name, [&](const fs::path& path, const std::string& title) {
     if (const std::string ending = path.extension().string(); ending == ".csg" || ending == ".json") {
       throw UnusableInput(title +
                           ": is a scene, not a mesh; copy what it holds into this one, or make a mesh of it first");
     }
-    return shape_from_mesh(read_mesh(path, run_), title);
+    return shape_from_mesh(read_mesh(path, context_), title);
   });
 }
 
-Shape Workshop::point_file(const std::string& name) {
+Shape SceneLoader::point_file(const std::string& name) {
   return once(points_, name, [&](const fs::path& path, const std::string& title) {
-    return shape_from_points(read_points(path, run_), title);
+    return shape_from_points(read_points(path, context_), title);
   });
 }
 
-Shape Workshop::dexel_file(const std::string& name) {
+Shape SceneLoader::dexel_file(const std::string& name) {
   return once(dexels_, name, [&](const fs::path& path, const std::string& title) {
-    return shape_from_dexels(read_dexels(path, run_), title);
+    return shape_from_dexels(read_dexels(path, context_), title);
   });
 }
 
-Shape Workshop::shader_file(const std::string& name, const GlslOptions& options) const {
+Shape SceneLoader::shader_file(const std::string& name, const GlslOptions& options) const {
   return read_glsl(file(name), options);
 }
 
-Shape Workshop::raster_files(const std::string& vertex, const std::string& fragment, RasterOptions options) const {
+Shape SceneLoader::raster_files(const std::string& vertex, const std::string& fragment, RasterOptions options) const {
   const auto path = [&](const std::string& name) { return name == "default" ? fs::path() : file(name); };
   return read_raster(path(vertex), path(fragment), std::move(options));
 }
 
-Shape Workshop::placed(const Shape& shape, const Affine* placement) {
+Shape SceneLoader::placed(const Shape& shape, const Affine* placement) {
   if (placement == nullptr) return shape;
   if (const Mesh* mesh = shape.mesh()) spend(mesh->triangles.size());
   if (const PointCloud* cloud = shape.points()) spend(cloud->points.size());
   return transformed(shape, *placement);
 }
 
-void Workshop::spend(std::uint64_t count) {
+void SceneLoader::spend(std::uint64_t count) {
   if (count > left_) {
     throw UnusableInput("asks for more triangles than a scene may have (100,000,000); split it, or use fewer copies");
   }

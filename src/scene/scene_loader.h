@@ -15,10 +15,10 @@
 namespace evenmesh {
 
 /// Where shapes of one scene come from. Throws UnusableInput without the scene's name; readers add it, and the place.
-class Workshop {
+class SceneLoader {
  public:
-  Workshop(std::filesystem::path folder, const SceneLimits& limits, Run& run)
-      : folder_(std::move(folder)), left_(limits.triangles), run_(run) {}
+  SceneLoader(std::filesystem::path folder, const SceneLimits& limits, ExecutionContext& context)
+      : folder_(std::move(folder)), left_(limits.triangles), context_(context) {}
 
   /// The solid in a mesh file, or the surface of a point file; read once however often it is asked for.
   /// @param name  relative to the scene's folder, or absolute
@@ -36,7 +36,7 @@ class Workshop {
   /// Triangles or points about to be made. A few bytes could otherwise ask for more than fits into any memory.
   void spend(std::uint64_t count);
 
-  Run& run() const { return run_; }
+  ExecutionContext& run() const { return context_; }
 
  private:
   std::filesystem::path file(const std::string& name) const;
@@ -46,13 +46,13 @@ class Workshop {
 
   std::filesystem::path folder_;
   std::uint64_t left_;
-  Run& run_;
+  ExecutionContext& context_;
   std::map<std::filesystem::path, Shape> meshes_, points_, dexels_;
 };
 
 /// Reads a JSON scene. @throws UnusableInput, NotAvailable
-Shape read_json_scene(const Source& source, Workshop& workshop, const SceneLimits& limits);
+Shape read_json_scene(const Source& source, SceneLoader& loader, const SceneLimits& limits);
 /// Reads an OpenSCAD .csg file. @throws UnusableInput
-Shape read_csg_scene(const Source& source, Workshop& workshop, const SceneLimits& limits);
+Shape read_csg_scene(const Source& source, SceneLoader& loader, const SceneLimits& limits);
 
 }  // namespace evenmesh

@@ -37,7 +37,7 @@ struct Cell {
 /// undecided(cells) is false. One cell after the other or, for fields that want batches, thousands together.
 template <typename Skip, typename Undecided>
 bool each_undecided(const Field& field, std::vector<Cell> cells, const Skip& skip, const Undecided& undecided) {
-  const std::size_t together = wants_batches(field) ? 4096 : 1;
+  const std::size_t together = prefers_batches(field) ? 4096 : 1;
   std::vector<Cell> some;
   std::vector<Box> boxes;
   std::vector<Interval> ranges;
@@ -63,7 +63,7 @@ bool each_undecided(const Field& field, std::vector<Cell> cells, const Skip& ski
 /// How many of the cells have their middle inside.
 std::size_t middles_inside(const Field& field, const std::vector<Cell>& cells) {
   const auto is_negative = [](auto f) { return f < 0; };
-  if (!wants_batches(field))
+  if (!prefers_batches(field))
     return static_cast<std::size_t>(std::count_if(
         cells.begin(), cells.end(), [&](const Cell& cell) { return field.evaluate(cell.box.center(), nullptr) < 0; }));
   if (cells.empty()) return 0;

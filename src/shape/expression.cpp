@@ -70,7 +70,7 @@ class Parser {
   Parser(std::string_view text, const std::map<std::string, double>& parameters)
       : text_(text), parameters_(parameters), tokens_(tokenize(text)) {}
 
-  Program run() {
+  ExpressionGraph run() {
     if (tokens_.size() == 1) throw InvalidInput("the expression is empty; write for example x^2+y^2+z^2-1");
     NodeId result = sum();
     if (accept('=')) result = builder_.sub(result, sum());
@@ -243,12 +243,12 @@ class Parser {
   std::vector<Token> tokens_;
   std::size_t at_ = 0;
   int depth_ = 0;
-  ProgramBuilder builder_;
+  GraphBuilder builder_;
 };
 
 }  // namespace
 
-Program parse_expression(std::string_view text, const std::map<std::string, double>& parameters) {
+ExpressionGraph parse_expression(std::string_view text, const std::map<std::string, double>& parameters) {
   check_parameters(parameters);
   return Parser(text, parameters).run();
 }

@@ -80,9 +80,9 @@ Vec3 chained(double factor, const Vec3& d) {
   return {times(d.x), times(d.y), times(d.z)};
 }
 
-class ProgramField final : public Field {
+class GraphField final : public Field {
  public:
-  explicit ProgramField(Program program) : program_(std::move(program)), tape_(compile_tape(program_)) {}
+  explicit GraphField(ExpressionGraph graph) : graph_(std::move(graph)), tape_(compile_tape(graph_)) {}
 
   void evaluate(const PointBatch& points, std::span<float> values) const override { run_tape(tape_, points, values); }
 
@@ -103,23 +103,23 @@ class ProgramField final : public Field {
 
   std::shared_ptr<const Field> specialized(const Box& box) const override;
 
-  const Program& program() const { return program_; }
+  const ExpressionGraph& graph() const { return graph_; }
 
  private:
   const std::vector<Enclosure>& enclose_all(const Box& box) const;
   double value(const Vec3& point) const;
   double value_and_gradient(const Vec3& point, Vec3& gradient) const;
 
-  Program program_;
+  ExpressionGraph graph_;
   Tape tape_;
 };
 
 /// Enclosures of all nodes, in the thread's own memory: valid until the next call.
-const std::vector<Enclosure>& ProgramField::enclose_all(const Box& box) const {
+const std::vector<Enclosure>& GraphField::enclose_all(const Box& box) const {
   thread_local std::vector<Enclosure> enclosures;
-  enclosures.resize(program_.nodes.size());
+  enclosures.resize(graph_.nodes.size());
   for (std::size_t i = 0; i < enclosures.size(); ++i) {
-    const Node& n = program_.nodes[i];
+    const Node& n = graph_.nodes[i];
     if (n.op <= Op::z)
       enclosures[i] = evenmesh::enclose(box.lo[static_cast<int>(n.op)], box.hi[static_cast<int>(n.op)]);
     else
@@ -128,21 +128,21 @@ const std::vector<Enclosure>& ProgramField::enclose_all(const Box& box) const {
   return enclosures;
 }
 
-double ProgramField::value(const Vec3& point) const {
+double GraphField::value(const Vec3& point) const {
   thread_local std::vector<double> values;
-  values.resize(program_.nodes.size());
+  values.resize(graph_.nodes.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const Node& n = program_.nodes[i];
+    const Node& n = graph_.nodes[i];
     values[i] = n.op <= Op::z ? point[static_cast<int>(n.op)] : apply(n, values[n.a], values[n.b]);
   }
   return values.back();
 }
 
-double ProgramField::value_and_gradient(const Vec3& point, Vec3& gradient) const {
+double GraphField::value_and_gradient(const Vec3& point, Vec3& gradient) const {
   thread_local std::vector<Dual> duals;
-  duals.resize(program_.nodes.size());
+  duals.resize(graph_.nodes.size());
   for (std::size_t i = 0; i < duals.size(); ++i) {
-    const Node& n = program_.nodes[i];
+    const Node& n = graph_.nodes[i];
     if (n.op <= Op::z) {
       const int axis = static_cast<int>(n.op);
       duals[i] = {point[axis], {}};
@@ -173,9 +173,9 @@ Decision decide(const Node& n, const Enclosure& a, const Enclosure& b) {
 
 // As in Keeter, Massively parallel rendering of complex closed-form implicit surfaces, ToG 2020, §3.3: nodes are
 // dropped but not simplified further, which would change the rounding.
-std::shared_ptr<const Field> ProgramField::specialized(const Box& box) const {
+std::shared_ptr<const Field> GraphField::specialized(const Box& box) const {
   const std::vector<Enclosure>& enclosures = enclose_all(box);
-  Program shorter = program_;
+  ExpressionGraph shorter = graph_;
   std::vector<NodeId> stands_for(shorter.nodes.size());
   bool decided = false;
   for (NodeId i = 0; i < shorter.nodes.size(); ++i) {
@@ -193,19 +193,19 @@ std::shared_ptr<const Field> ProgramField::specialized(const Box& box) const {
   const NodeId result = stands_for.back();
   shorter.nodes.resize(result + 1);
   if (operand_count(shorter.nodes[result].op) == 0) shorter.nodes.push_back({Op::affine, result, 0, 1.0, 0.0});
-  Program used = without_unused(shorter);
-  return used.nodes.size() < program_.nodes.size() ? make_program_field(std::move(used)) : nullptr;
+  ExpressionGraph used = without_unused(shorter);
+  return used.nodes.size() < graph_.nodes.size() ? make_graph_field(std::move(used)) : nullptr;
 }
 
 }  // namespace
 
-std::shared_ptr<const Field> make_program_field(Program program) {
-  return std::make_shared<ProgramField>(std::move(program));
+std::shared_ptr<const Field> make_graph_field(ExpressionGraph graph) {
+  return std::make_shared<GraphField>(std::move(graph));
 }
 
-const Program* program_of(const Field& field) {
-  const auto* found = dynamic_cast<const ProgramField*>(&field);
-  return found ? &found->program() : nullptr;
+const ExpressionGraph* graph_of(const Field& field) {
+  const auto* found = dynamic_cast<const GraphField*>(&field);
+  return found ? &found->graph() : nullptr;
 }
 
 }  // namespace evenmesh

@@ -104,41 +104,41 @@ double apply(const Node& node, double a, double b) {
   return 0;
 }
 
-std::size_t ProgramBuilder::KeyHash::operator()(const Key& key) const {
+std::size_t GraphBuilder::KeyHash::operator()(const Key& key) const {
   Random mix(key.s ^ (key.t << 1) ^ (static_cast<std::uint64_t>(key.op) << 56) ^
              (static_cast<std::uint64_t>(key.a) << 28) ^ key.b);
   return static_cast<std::size_t>(mix.bits());
 }
 
-ProgramBuilder::ProgramBuilder() {
+GraphBuilder::GraphBuilder() {
   node(Op::x);
   node(Op::y);
   node(Op::z);
 }
 
-NodeId ProgramBuilder::node(Op op, NodeId a, NodeId b, double s, double t) {
+NodeId GraphBuilder::node(Op op, NodeId a, NodeId b, double s, double t) {
   const Key key{op, a, b, std::bit_cast<std::uint64_t>(s), std::bit_cast<std::uint64_t>(t)};
   const auto [entry, is_new] = known_.try_emplace(key, static_cast<NodeId>(nodes_.size()));
   if (is_new) nodes_.push_back({op, a, b, s, t});
   return entry->second;
 }
 
-NodeId ProgramBuilder::constant(double value) {
+NodeId GraphBuilder::constant(double value) {
   return node(Op::constant, 0, 0, value);
 }
 
-NodeId ProgramBuilder::radius() {
+NodeId GraphBuilder::radius() {
   return function(Op::sqrt, add(add(square(coordinate(0)), square(coordinate(1))), square(coordinate(2))));
 }
 
-ProgramBuilder::Linear ProgramBuilder::linear(NodeId a) const {
+GraphBuilder::Linear GraphBuilder::linear(NodeId a) const {
   const Node& n = nodes_[a];
   if (n.op == Op::constant) return {0.0, n.s, a};
   if (n.op == Op::affine) return {n.s, n.t, n.a};
   return {1.0, 0.0, a};
 }
 
-NodeId ProgramBuilder::affine(NodeId a, double scale, double offset) {
+NodeId GraphBuilder::affine(NodeId a, double scale, double offset) {
   const Linear inner = linear(a);
   const double s = scale * inner.scale, t = scale * inner.offset + offset;
   if (s == 0) return constant(t);
@@ -146,7 +146,7 @@ NodeId ProgramBuilder::affine(NodeId a, double scale, double offset) {
   return node(Op::affine, inner.base, 0, s, t);
 }
 
-NodeId ProgramBuilder::combine(NodeId a, NodeId b, double sign) {
+NodeId GraphBuilder::combine(NodeId a, NodeId b, double sign) {
   const Linear p = linear(a), q = linear(b);
   const double scale = sign * q.scale, offset = p.offset + sign * q.offset;
   if (p.scale == 0) return affine(q.base, scale, offset);
@@ -161,7 +161,7 @@ NodeId ProgramBuilder::combine(NodeId a, NodeId b, double sign) {
   return affine(node(Op::blend, p.base, q.base, p.scale, scale), 1.0, offset);
 }
 
-NodeId ProgramBuilder::mul(NodeId a, NodeId b) {
+NodeId GraphBuilder::mul(NodeId a, NodeId b) {
   if (is_constant(a)) return affine(b, nodes_[a].s, 0.0);
   if (is_constant(b)) return affine(a, nodes_[b].s, 0.0);
   if (a == b) return square(a);
@@ -174,7 +174,7 @@ NodeId ProgramBuilder::mul(NodeId a, NodeId b) {
   return affine(node(Op::mul, a, b), scale, 0.0);
 }
 
-NodeId ProgramBuilder::square(NodeId a) {
+NodeId GraphBuilder::square(NodeId a) {
   if (is_constant(a)) return constant(nodes_[a].s * nodes_[a].s);
   const Linear p = linear(a);
   if (p.offset == 0 && p.scale != 1) return affine(square(p.base), p.scale * p.scale, 0.0);
@@ -183,7 +183,7 @@ NodeId ProgramBuilder::square(NodeId a) {
   return node(Op::square, a);
 }
 
-bool ProgramBuilder::nonnegative(NodeId a) const {
+bool GraphBuilder::nonnegative(NodeId a) const {
   // Sums are looked into as deep as √(x² + y² + z²) and its like need.
   const auto visit = [this](const auto& self, NodeId n, int depth) -> bool {
     const Node& p = nodes_[n];
@@ -208,7 +208,7 @@ bool ProgramBuilder::nonnegative(NodeId a) const {
   return visit(visit, a, 6);
 }
 
-NodeId ProgramBuilder::div(NodeId a, NodeId b) {
+NodeId GraphBuilder::div(NodeId a, NodeId b) {
   if (is_constant(b) && nodes_[b].s != 0) return affine(a, 1.0 / nodes_[b].s, 0.0);
   if (is_constant(a) && is_constant(b)) return constant(nodes_[a].s / nodes_[b].s);
   const Linear p = linear(a), q = linear(b);
@@ -218,7 +218,7 @@ NodeId ProgramBuilder::div(NodeId a, NodeId b) {
   return affine(node(Op::div, a, b), scale, 0.0);
 }
 
-NodeId ProgramBuilder::power(NodeId a, std::uint32_t exponent) {
+NodeId GraphBuilder::power(NodeId a, std::uint32_t exponent) {
   NodeId result = 0;
   bool empty = true;
   for (;; exponent >>= 1, a = mul(a, a)) {
@@ -230,7 +230,7 @@ NodeId ProgramBuilder::power(NodeId a, std::uint32_t exponent) {
   }
 }
 
-NodeId ProgramBuilder::pow(NodeId a, NodeId b) {
+NodeId GraphBuilder::pow(NodeId a, NodeId b) {
   if (!is_constant(b)) return node(Op::pow, a, b);
   const double exponent = nodes_[b].s, size = std::abs(exponent), whole = std::floor(size);
   const bool half = size - whole == 0.5;
@@ -242,7 +242,7 @@ NodeId ProgramBuilder::pow(NodeId a, NodeId b) {
   return exponent > 0 ? result : div(constant(1.0), result);
 }
 
-NodeId ProgramBuilder::function(Op op, NodeId a) {
+NodeId GraphBuilder::function(Op op, NodeId a) {
   if (is_constant(a)) return constant(apply(Node{op}, nodes_[a].s, 0.0));
   if (op == Op::abs) {
     const Linear p = linear(a);
@@ -252,21 +252,21 @@ NodeId ProgramBuilder::function(Op op, NodeId a) {
   return node(op, a);
 }
 
-NodeId ProgramBuilder::function(Op op, NodeId a, NodeId b) {
+NodeId GraphBuilder::function(Op op, NodeId a, NodeId b) {
   if (is_constant(a) && is_constant(b)) return constant(apply(Node{op}, nodes_[a].s, nodes_[b].s));
   if (a == b && (op == Op::min || op == Op::max)) return a;
   return node(op, a, b);
 }
 
-Program ProgramBuilder::finish(NodeId result) const {
-  Program program{std::vector<Node>(nodes_.begin(), nodes_.begin() + result + 1)};
+ExpressionGraph GraphBuilder::finish(NodeId result) const {
+  ExpressionGraph graph{std::vector<Node>(nodes_.begin(), nodes_.begin() + result + 1)};
   // The tape needs something to execute: a bare coordinate or constant is copied, as 1·a + 0.
-  if (operand_count(nodes_[result].op) == 0) program.nodes.push_back({Op::affine, result, 0, 1.0, 0.0});
-  return without_unused(program);
+  if (operand_count(nodes_[result].op) == 0) graph.nodes.push_back({Op::affine, result, 0, 1.0, 0.0});
+  return without_unused(graph);
 }
 
-Program without_unused(const Program& program) {
-  const std::vector<Node>& nodes = program.nodes;
+ExpressionGraph without_unused(const ExpressionGraph& graph) {
+  const std::vector<Node>& nodes = graph.nodes;
   std::vector<char> used(nodes.size(), 0);
   used.back() = 1;
   for (std::size_t i = nodes.size(); i-- > 0;) {
@@ -274,7 +274,7 @@ Program without_unused(const Program& program) {
     if (operands > 0) used[nodes[i].a] = 1;
     if (operands > 1) used[nodes[i].b] = 1;
   }
-  Program result;
+  ExpressionGraph result;
   std::vector<NodeId> renamed(nodes.size(), 0);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (!used[i]) continue;

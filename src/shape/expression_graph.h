@@ -52,16 +52,16 @@ struct Node {
 int operand_count(Op op);
 
 /// Nodes in an order in which operands come first; the last one is the result.
-struct Program {
+struct ExpressionGraph {
   std::vector<Node> nodes;
 };
 
 /// Builds programs: shares equal subexpressions, folds constants, gathers constant factors and offsets, and turns
 /// powers into products. Simplification may change the rounding of the result, nothing else (up to 0·∞ and x − x at
 /// NaN).
-class ProgramBuilder {
+class GraphBuilder {
  public:
-  ProgramBuilder();
+  GraphBuilder();
 
   NodeId constant(double value);
   NodeId coordinate(int axis) const { return static_cast<NodeId>(axis); }
@@ -76,7 +76,7 @@ class ProgramBuilder {
   NodeId function(Op op, NodeId a, NodeId b);  ///< atan2, min, max, mod
 
   /// The nodes that `result` needs. The last one is never a bare coordinate or constant.
-  Program finish(NodeId result) const;
+  ExpressionGraph finish(NodeId result) const;
 
  private:
   struct Key {
@@ -108,7 +108,7 @@ class ProgramBuilder {
 };
 
 /// The program without nodes that the last one does not need.
-Program without_unused(const Program& program);
+ExpressionGraph without_unused(const ExpressionGraph& graph);
 
 /// One operation on numbers, as the nodes define it.
 double apply(const Node& node, double a, double b);

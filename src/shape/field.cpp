@@ -63,7 +63,7 @@ void differentiate_at_once(const Field& field, const PointBatch& points, float s
 void Field::evaluate_gradient(const PointBatch& points, std::span<float> values, std::span<float> dx,
                               std::span<float> dy, std::span<float> dz) const {
   const float step = static_cast<float>(epsilon());
-  if (wants_batches(*this)) return differentiate_at_once(*this, points, step, values, {dx, dy, dz});
+  if (prefers_batches(*this)) return differentiate_at_once(*this, points, step, values, {dx, dy, dz});
   evaluate(points, values);
   differentiate_axis(*this, points, 0, step, dx);
   differentiate_axis(*this, points, 1, step, dy);

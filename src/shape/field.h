@@ -61,7 +61,7 @@ class Field {
 };
 
 /// Whether a call costs as much as many points: then it pays to ask for all that is known to be needed at once.
-inline bool wants_batches(const Field& field) {
+inline bool prefers_batches(const Field& field) {
   return field.batch_size() > 1024;
 }
 

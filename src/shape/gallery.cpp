@@ -118,7 +118,7 @@ Shape gallery_shape(std::string_view name) {
   std::vector<std::string_view> names;
   for (const Exhibit& exhibit : exhibits()) {
     if (exhibit.entry.name == name) {
-      const auto field = exhibit.make ? exhibit.make() : make_program_field(parse_expression(exhibit.entry.formula));
+      const auto field = exhibit.make ? exhibit.make() : make_graph_field(parse_expression(exhibit.entry.formula));
       return Shape{std::string(name), exhibit.bounds, field, false};
     }
     names.push_back(exhibit.entry.name);

@@ -20,7 +20,7 @@ constexpr int room = 3;                      ///< so many larger cubes must show
 constexpr int cube_cells = 39, shrink_cells = 64, final_cells = 128, face_cells = 512, shell_cells = 140;
 constexpr double margin = 1.5;  ///< cells around the last points inside
 constexpr double enough = 0.7;  ///< shrinking stops when all sides keep more than this
-constexpr int most_shrinks = 40, most_growths = 24;
+constexpr int max_shrinks = 40, max_growths = 24;
 
 Box grown(const Box& box, const Vec3& by) {
   return {box.lo - by, box.hi + by};
@@ -101,7 +101,7 @@ void shrink(const Field& field, Seen& seen) {
     seen.points = united(seen.points, inside_points(field, seen.around, cells(n)).box);
     return seen.around.size() / n;
   };
-  for (int round = 0; round < most_shrinks; ++round) {
+  for (int round = 0; round < max_shrinks; ++round) {
     const Vec3 old_size = seen.around.size(), cell = look(shrink_cells);
     seen.around = common(grown(seen.points, cell), grown(seen.around, cell));
     const Vec3 size = seen.around.size();
@@ -159,11 +159,11 @@ Box probed_bounds(const Field& field) {
   shrink(field, *seen);
   const Box limit = cube_of(largest + room);
   bool fits = true;  // not grown since it was shrunk, or shrunk often enough
-  for (int round = 0; round < most_growths; ++round) {
+  for (int round = 0; round < max_growths; ++round) {
     if (grow(field, *seen)) {
       fits = false;
       if (!limit.contains(seen->around.lo) || !limit.contains(seen->around.hi)) break;
-    } else if (fits || round > most_growths / 2) {
+    } else if (fits || round > max_growths / 2) {
       return seen->around;
     } else {
       shrink(field, *seen);

@@ -21,14 +21,14 @@ class Sampler {
   /// the three directions with one and the same inside, nothing inside in the grid's outermost layer.
   /// @param bounds  within the grid; what is beyond is cut off, and closed there
   /// @throws UnusableInput  the solid cannot be asked
-  virtual SampleSet sample(const Grid& grid, const Box& bounds, Run& run) const = 0;
+  virtual SampleSet sample(const Grid& grid, const Box& bounds, ExecutionContext& context) const = 0;
 
   /// All that rays meet on the edges of a grid, whether there is an inside between or not; open ends stay open. What
   /// lies beyond the bounds is left out.
-  virtual SampleSet sample_surface(const Grid& grid, const Box& bounds, Run& run) const = 0;
+  virtual SampleSet sample_surface(const Grid& grid, const Box& bounds, ExecutionContext& context) const = 0;
 
   /// How far the rays of the three directions agree on what is inside; 1 for a solid, as solidity() of meshes.
-  virtual double solidity(const Box& bounds, Run& run) const = 0;
+  virtual double solidity(const Box& bounds, ExecutionContext& context) const = 0;
 
   /// The same moved. @param transform  not singular
   virtual std::shared_ptr<const Sampler> moved(const Affine& transform) const = 0;

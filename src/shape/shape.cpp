@@ -91,7 +91,7 @@ Shape shape_from_expression(std::string_view expression, const std::map<std::str
                             const Box& bounds) {
   const bool bounded = bounds != Box{};
   if (bounded) require_usable_bounds(bounds);
-  return Shape{std::string(expression), bounds, make_program_field(parse_expression(expression, parameters)), bounded};
+  return Shape{std::string(expression), bounds, make_graph_field(parse_expression(expression, parameters)), bounded};
 }
 
 Density density_from_expression(std::string_view expression, const std::map<std::string, double>& parameters) {

@@ -26,8 +26,8 @@ std::uint8_t mask_of_result(const Instruction& instruction) {
 
 }  // namespace
 
-Tape compile_tape(const Program& program) {
-  const std::vector<Node>& nodes = program.nodes;
+Tape compile_tape(const ExpressionGraph& graph) {
+  const std::vector<Node>& nodes = graph.nodes;
   const std::vector<std::uint32_t> last = last_uses(nodes);
   Tape tape;
   std::vector<std::uint32_t> place(nodes.size(), 0), unused;

@@ -35,7 +35,7 @@ struct Tape {
 };
 
 /// Register allocation by last use. Cost: linear in the number of nodes.
-Tape compile_tape(const Program& program);
+Tape compile_tape(const ExpressionGraph& graph);
 
 /// values[i] = f(point i). Same bits on every processor and wherever a point stands (no fused operations).
 void run_tape(const Tape& tape, const PointBatch& points, std::span<float> values);

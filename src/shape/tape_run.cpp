@@ -215,7 +215,7 @@ HWY_INLINE void chain(std::size_t n, float* dst, const float* da, const float* d
 }
 
 /// The derivative of the operand taken: `taken` is 1 for a and 0 for b.
-HWY_INLINE void chain_choice(std::size_t n, float* dst, const float* da, const float* db, const float* taken) {
+HWY_INLINE void curve_choice(std::size_t n, float* dst, const float* da, const float* db, const float* taken) {
   const FloatTag d;
   const Floats zero = hn::Zero(d);
   for (std::size_t i = 0; i < n; i += hn::Lanes(d)) {
@@ -254,7 +254,7 @@ HWY_NOINLINE void run_gradient(const Instruction& c, std::size_t n, const Planes
         break;
       case Op::min:
       case Op::max:
-        chain_choice(n, to, da, db, fa);
+        curve_choice(n, to, da, db, fa);
         break;
       default:
         chain(n, to, da, db, fa, fb);

@@ -22,16 +22,16 @@ bool has_diagonal_face(unsigned corners) {
 
 }  // namespace
 
-std::vector<Vec3> find_pinches(const SampleSet& samples, Run& run) {
-  std::array<bool, 256> pinched{};
-  for (unsigned c = 0; c < 256; ++c) pinched[c] = has_diagonal_face(c);
-  const auto bricks = cube_bricks(samples, run);
+std::vector<Vec3> find_ambiguous_faces(const SampleSet& samples, ExecutionContext& context) {
+  std::array<bool, 256> ambiguous{};
+  for (unsigned c = 0; c < 256; ++c) ambiguous[c] = has_diagonal_face(c);
+  const auto bricks = cube_bricks(samples, context);
   std::vector<std::vector<Vec3>> of_brick(bricks.size());
   tbb::enumerable_thread_specific<CubeWalker> walkers([&] { return CubeWalker(samples); });
-  parallel_for(run, bricks.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, bricks.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b)
       walkers.local().walk_cubes(bricks[b], [&](unsigned corners, int i, int j, int k) {
-        if (!pinched[corners]) return;
+        if (!ambiguous[corners]) return;
         const auto& at = bricks[b].at;
         of_brick[b].push_back(samples.grid.point(8 * at[0] + i + 0.5, 8 * at[1] + j + 0.5, 8 * at[2] + k + 0.5));
       });

@@ -11,6 +11,6 @@ namespace evenmesh {
 /// Centres of the grid cubes with a face whose inside corners lie diagonally: two sheets pass there within one cell, so
 /// that it is chance whether the sampled solid is joined or separated. None on a surface whose features are wider than
 /// two cells. Cost: about 10 ns per sample and core. Same list for any number of threads.
-std::vector<Vec3> find_pinches(const SampleSet& samples, Run& run);
+std::vector<Vec3> find_ambiguous_faces(const SampleSet& samples, ExecutionContext& context);
 
 }  // namespace evenmesh

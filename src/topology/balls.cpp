@@ -69,14 +69,15 @@ struct NewBlock {
 
 class Union {
  public:
-  Union(const SampleSet& samples, std::span<const Ball> balls, Run& run) : samples_(samples), balls_(balls), run_(run) {
+  Union(const SampleSet& samples, std::span<const Ball> balls, ExecutionContext& context)
+      : samples_(samples), balls_(balls), context_(context) {
     for (const SampleBlock& b : samples.blocks) keys_.push_back(morton_code(b.brick[0], b.brick[1], b.brick[2]));
   }
 
   SampleSet result() {
     find_bricks();
     std::vector<NewBlock> made(touched_.size());
-    parallel_for(run_, touched_.size(), 4, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context_, touched_.size(), 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) made[t] = remake(touched_[t].first, touched_[t].second);
     });
     return merge(made);
@@ -257,15 +258,15 @@ class Union {
 
   const SampleSet& samples_;
   std::span<const Ball> balls_;
-  Run& run_;
+  ExecutionContext& context_;
   std::vector<std::uint64_t> keys_;  ///< of the blocks, ascending
   std::vector<std::pair<std::uint64_t, std::vector<std::uint32_t>>> touched_;
 };
 
 }  // namespace
 
-SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, Run& run) {
-  return Union(samples, balls, run).result();
+SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, ExecutionContext& context) {
+  return Union(samples, balls, context).result();
 }
 
 BallIndex::BallIndex(std::vector<Ball> balls, double largest_radius) : side_(largest_radius) {

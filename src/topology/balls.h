@@ -22,7 +22,7 @@ struct Ball {
 /// Guarantee: the samples bound a solid, in the order a SampleSet promises; same bits for any number of threads.
 /// Cost: O(samples) for copying, and about a microsecond for every grid point near a ball.
 /// Based on [Raster2Mesh §4.4].
-SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, Run& run);
+SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, ExecutionContext& context);
 
 /// Finds the balls around a point. Safe from several threads while none is added.
 class BallIndex {

@@ -41,33 +41,33 @@ struct Cell {
 class Planner {
  public:
   Planner(const SampleSet& samples, std::span<const std::uint32_t> labels, std::span<const Vec3> seeds,
-          std::span<const Vec3> pinches, const BallIndex& balls, const MendOptions& options)
+          std::span<const Vec3> ambiguous_faces, const BallIndex& balls, const TopologyRepairOptions& options)
       : samples_(samples),
         labels_(labels),
         seeds_(seeds),
-        pinch_points_(pinches),
-        pinches_(pinches, options.edge),
+        ambiguous_points_(ambiguous_faces),
+        ambiguous_faces_(ambiguous_faces, options.edge),
         balls_(balls),
         options_(options),
         new_balls_({}, 0.5 * options.edge),
-        planned_(pinches.size(), 0),
+        planned_(ambiguous_faces.size(), 0),
         cells_(seeds.size()),
         asked_(seeds.size(), 0) {
-    mending_.balls = balls.balls();
-    grown_.assign(mending_.balls.size(), 0);
+    repair_.balls = balls.balls();
+    grown_.assign(repair_.balls.size(), 0);
   }
 
-  Mending plan(std::span<const std::pair<std::uint32_t, std::uint32_t>> defects) {
+  TopologyRepair plan(std::span<const std::pair<std::uint32_t, std::uint32_t>> defects) {
     std::vector<char> defective(seeds_.size(), 0);
     for (const auto& [a, b] : defects) defective[a] = defective[b] = 1;
     measure(defective);
-    for (const auto& [a, b] : defects) mend(a, b);
+    for (const auto& [a, b] : defects) repair_topology(a, b);
     for (std::size_t l = 0; l < asked_.size(); ++l)
       if (asked_[l] && cells_[l].farthest > 0) {
-        mending_.seeds.push_back(cells_[l].far_sample);
-        if (l >= options_.given) mending_.seeds.push_back(seeds_[l]);
+        repair_.seeds.push_back(cells_[l].far_sample);
+        if (l >= options_.given) repair_.seeds.push_back(seeds_[l]);
       }
-    return std::move(mending_);
+    return std::move(repair_);
   }
 
  private:
@@ -95,7 +95,7 @@ class Planner {
     });
   }
 
-  void mend(std::uint32_t a, std::uint32_t b) {
+  void repair_topology(std::uint32_t a, std::uint32_t b) {
     const Vec3 p = cells_[a].centroid(seeds_[a]), q = cells_[b].centroid(seeds_[b]), middle = 0.5 * (p + q);
     const double size = std::sqrt(std::max(cells_[a].area, cells_[b].area));
     const double reach = std::min(options_.edge, 0.5 * norm(p - q) + 0.6 * size + 2 * samples_.grid.spacing);
@@ -103,12 +103,12 @@ class Planner {
       asked_[a] = asked_[b] = 1;
       return;
     }
-    bool pinched = false;
-    pinches_.near(middle, reach, [&](std::uint32_t i) {
-      pinched = true;
-      if (!planned_[i]) planned_[i] = 1, put_ball(pinch_points_[i]);
+    bool ambiguous = false;
+    ambiguous_faces_.near(middle, reach, [&](std::uint32_t i) {
+      ambiguous = true;
+      if (!planned_[i]) planned_[i] = 1, put_ball(ambiguous_points_[i]);
     });
-    if (pinched) return;
+    if (ambiguous) return;
     if (std::min(cells_[a].samples, cells_[b].samples) < fewest_samples) return put_ball(middle);
     if (options_.prefer_balls && unresolved_near(middle)) return put_ball(middle);
     asked_[a] = asked_[b] = 1;
@@ -118,7 +118,7 @@ class Planner {
   bool unresolved_near(const Vec3& p) const {
     const double reach = 3 * options_.edge;
     bool found = false;
-    pinches_.near(p, reach, [&](std::uint32_t) { found = true; });
+    ambiguous_faces_.near(p, reach, [&](std::uint32_t) { found = true; });
     balls_.near(p, reach, [&](std::uint32_t b) { found |= norm(p - balls_.balls()[b].center) < reach; });
     return found;
   }
@@ -128,42 +128,44 @@ class Planner {
     const double start = 0.5 * options_.edge, most = options_.edge, step = 0.125 * options_.edge;
     bool met = false;
     balls_.near(p, 0.25 * options_.edge, [&](std::uint32_t b) {
-      Ball& ball = mending_.balls[b];
+      Ball& ball = repair_.balls[b];
       if (met || norm(p - ball.center) > balls_.balls()[b].radius + 0.25 * options_.edge) return;
       if (!grown_[b] && ball.radius + 0.5 * step > most) return;
       met = true;
       if (grown_[b]) return;
       grown_[b] = 1, ball.radius += step;
-      mending_.changed.push_back(b);
+      repair_.changed.push_back(b);
     });
     new_balls_.near(p, 0,
                     [&](std::uint32_t b) { met |= squared_norm(p - new_balls_.balls()[b].center) < start * start; });
     if (met) return;
-    mending_.changed.push_back(static_cast<std::uint32_t>(mending_.balls.size()));
-    mending_.balls.push_back({p, start});
+    repair_.changed.push_back(static_cast<std::uint32_t>(repair_.balls.size()));
+    repair_.balls.push_back({p, start});
     new_balls_.add({p, start});
   }
 
   const SampleSet& samples_;
   std::span<const std::uint32_t> labels_;
   std::span<const Vec3> seeds_;
-  std::span<const Vec3> pinch_points_;
-  PointIndex pinches_;
+  std::span<const Vec3> ambiguous_points_;
+  PointIndex ambiguous_faces_;
   const BallIndex& balls_;
-  const MendOptions& options_;
+  const TopologyRepairOptions& options_;
   BallIndex new_balls_;
   std::vector<char> planned_;  ///< pinches that have been seen to
   std::vector<Cell> cells_;
   std::vector<char> asked_, grown_;
-  Mending mending_;
+  TopologyRepair repair_;
 };
 
 }  // namespace
 
-Mending plan_mending(const SampleSet& samples, std::span<const std::uint32_t> labels, std::span<const Vec3> seeds,
-                     std::span<const std::pair<std::uint32_t, std::uint32_t>> defects, std::span<const Vec3> pinches,
-                     const BallIndex& balls, const MendOptions& options) {
-  return Planner(samples, labels, seeds, pinches, balls, options).plan(defects);
+TopologyRepair plan_topology_repair(const SampleSet& samples, std::span<const std::uint32_t> labels,
+                                    std::span<const Vec3> seeds,
+                                    std::span<const std::pair<std::uint32_t, std::uint32_t>> defects,
+                                    std::span<const Vec3> ambiguous_faces, const BallIndex& balls,
+                                    const TopologyRepairOptions& options) {
+  return Planner(samples, labels, seeds, ambiguous_faces, balls, options).plan(defects);
 }
 
 void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<const std::uint32_t> changed,
@@ -199,7 +201,7 @@ void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<co
 }
 
 void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std::span<const std::uint32_t> labels,
-                         std::size_t count, std::size_t held) {
+                         std::size_t count, std::size_t fixed) {
   if (seeds.empty()) return;
   std::vector<double> area(seeds.size(), 0);
   for (std::size_t i = 0; i < labels.size(); ++i)
@@ -209,7 +211,7 @@ void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double median = *middle, apart = 1.6 * std::sqrt(median);
   std::vector<std::uint32_t> order;
-  for (auto s = static_cast<std::uint32_t>(held); s < seeds.size(); ++s)
+  for (auto s = static_cast<std::uint32_t>(fixed); s < seeds.size(); ++s)
     if (area[s] >= 0.9 * median) order.push_back(s);
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return area[a] != area[b] ? area[a] < area[b] : a < b; });
 

@@ -10,13 +10,13 @@
 
 namespace evenmesh {
 
-struct Mending {
+struct TopologyRepair {
   std::vector<Vec3> seeds;             ///< to be added
   std::vector<Ball> balls;             ///< all balls from now on: those given, some grown, and new ones
   std::vector<std::uint32_t> changed;  ///< indices of the balls that are new or have grown
 };
 
-struct MendOptions {
+struct TopologyRepairOptions {
   double edge = 0;            ///< wanted edge length, model units; balls start at half of it and end at one
   std::size_t given = 0;      ///< labels from here on are those of pieces: their seeds are not there yet
   bool prefer_balls = false;  ///< wherever a pinch is not far
@@ -24,13 +24,15 @@ struct MendOptions {
 };
 
 /// A seed goes to the sample farthest from the centre of each defective cell. Where cells have shrunk to a few samples,
-/// or a pinch of the grid (find_pinches) lies in them, more seeds cannot help: the topology there is an accident of the
-/// grid, and a ball makes it plain. A defect that meets a ball makes the ball grow. [Raster2Mesh §4.4]
+/// or a pinch of the grid (find_ambiguous_faces) lies in them, more seeds cannot help: the topology there is an
+/// accident of the grid, and a ball makes it plain. A defect that meets a ball makes the ball grow. [Raster2Mesh §4.4]
 ///
 /// Cost: O(samples). Deterministic.
-Mending plan_mending(const SampleSet& samples, std::span<const std::uint32_t> labels, std::span<const Vec3> seeds,
-                     std::span<const std::pair<std::uint32_t, std::uint32_t>> defects, std::span<const Vec3> pinches,
-                     const BallIndex& balls, const MendOptions& options);
+TopologyRepair plan_topology_repair(const SampleSet& samples, std::span<const std::uint32_t> labels,
+                                    std::span<const Vec3> seeds,
+                                    std::span<const std::pair<std::uint32_t, std::uint32_t>> defects,
+                                    std::span<const Vec3> ambiguous_faces, const BallIndex& balls,
+                                    const TopologyRepairOptions& options);
 
 /// Moves seeds out of balls, and leaves out those that lie closer than 0.6 edges to an earlier one around changed
 /// balls.
@@ -43,6 +45,6 @@ void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<co
 /// @param labels  cells of the seeds; labels from seeds.size() on are those of pieces
 /// @param held  so many seeds, the first ones, stay
 void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std::span<const std::uint32_t> labels,
-                         std::size_t count, std::size_t held = 0);
+                         std::size_t count, std::size_t fixed = 0);
 
 }  // namespace evenmesh

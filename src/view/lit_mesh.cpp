@@ -74,13 +74,13 @@ std::array<Vec3, 3> LitMesh::corner_normals(const Mesh& mesh, std::size_t triang
   return result;
 }
 
-LitMesh light_mesh(const Mesh& mesh, const Run& run) {
-  LitMesh lit{EmbreeScene(mesh, run), vertex_normals(mesh), std::vector<float>(mesh.vertices.size())};
+LitMesh light_mesh(const Mesh& mesh, const ExecutionContext& context) {
+  LitMesh lit{EmbreeScene(mesh, context), vertex_normals(mesh), std::vector<float>(mesh.vertices.size())};
   // Large meshes make do with fewer rays: their neighbours lie closer.
   const std::size_t count = std::clamp<std::size_t>(6'000'000 / mesh.vertices.size(), 32, 160);
   const std::vector<Vec3> directions = spread_directions(static_cast<int>(count));
-  with_threads(run, [&] {
-    parallel_for(run, mesh.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
+  with_threads(context, [&] {
+    parallel_for(context, mesh.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
         lit.openness[v] =
             openness_at(lit.scene.to_local(mesh.vertices[v]), lit.normals[v], directions, lit.scene.handle());

@@ -22,9 +22,9 @@ struct LitMesh {
 };
 
 /// Cost: three million rays at most for meshes below 100,000 vertices, some tenths of a second on two cores.
-LitMesh light_mesh(const Mesh& mesh, const Run& run);
+LitMesh light_mesh(const Mesh& mesh, const ExecutionContext& context);
 
 /// What render_mesh() does once the mesh is lit. @throws InvalidInput  no triangle, or a size out of range
-Image render_lit(const Mesh& mesh, const LitMesh& lit, const RenderOptions& options, const Run& run);
+Image render_lit(const Mesh& mesh, const LitMesh& lit, const RenderOptions& options, const ExecutionContext& context);
 
 }  // namespace evenmesh

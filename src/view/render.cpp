@@ -49,10 +49,10 @@ double edge_pixels(const Stage& stage) {
   return stage.camera.scale * sum / static_cast<double>(stage.mesh.triangles.size());
 }
 
-Stage set_up(const Mesh& mesh, const LitMesh& lit, const RenderOptions& options, const Run& run) {
+Stage set_up(const Mesh& mesh, const LitMesh& lit, const RenderOptions& options, const ExecutionContext& context) {
   Stage stage{mesh, lit, options, fit_camera(mesh, options), {}, {}};
   stage.screen.resize(mesh.vertices.size());
-  parallel_for(run, mesh.vertices.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, mesh.vertices.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) stage.screen[v] = stage.camera.project(mesh.vertices[v]);
   });
   const double edge = edge_pixels(stage);
@@ -236,14 +236,14 @@ void render_row(const Stage& stage, int row, std::uint8_t* to) {
 
 }  // namespace
 
-Image render_lit(const Mesh& mesh, const LitMesh& lit, const RenderOptions& options, const Run& run) {
+Image render_lit(const Mesh& mesh, const LitMesh& lit, const RenderOptions& options, const ExecutionContext& context) {
   check(mesh, options);
-  return with_threads(run, [&] {
-    const Stage stage = set_up(mesh, lit, options, run);
+  return with_threads(context, [&] {
+    const Stage stage = set_up(mesh, lit, options, context);
     Image image{options.width, options.height, {}};
     const std::size_t row_bytes = 3 * static_cast<std::size_t>(options.width);
     image.rgb.resize(row_bytes * static_cast<std::size_t>(options.height));
-    parallel_for(run, static_cast<std::size_t>(options.height), 4, [&](std::size_t begin, std::size_t end) {
+    parallel_for(context, static_cast<std::size_t>(options.height), 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row)
         render_row(stage, static_cast<int>(row), image.rgb.data() + row * row_bytes);
     });
@@ -251,9 +251,9 @@ Image render_lit(const Mesh& mesh, const LitMesh& lit, const RenderOptions& opti
   });
 }
 
-Image render_mesh(const Mesh& mesh, const RenderOptions& options, Run& run) {
+Image render_mesh(const Mesh& mesh, const RenderOptions& options, ExecutionContext& context) {
   check(mesh, options);
-  return render_lit(mesh, light_mesh(mesh, run), options, run);
+  return render_lit(mesh, light_mesh(mesh, context), options, context);
 }
 
 }  // namespace evenmesh

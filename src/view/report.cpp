@@ -110,24 +110,25 @@ std::string picture(const Image& image, const char* what, const std::string& cap
 /// Draws one mesh several times; its light is computed once.
 class Gallery {
  public:
-  Gallery(const Mesh& mesh, Run& run) : mesh_(mesh), run_(run), lit_(light_mesh(mesh, run)) {}
+  Gallery(const Mesh& mesh, ExecutionContext& context)
+      : mesh_(mesh), context_(context), lit_(light_mesh(mesh, context)) {}
 
   std::string figure(const RenderOptions& options, const char* caption) const {
-    return picture(render_lit(mesh_, lit_, options, run_), "the mesh", caption);
+    return picture(render_lit(mesh_, lit_, options, context_), "the mesh", caption);
   }
 
  private:
   const Mesh& mesh_;
-  Run& run_;
+  ExecutionContext& context_;
   LitMesh lit_;
 };
 
-std::string pictures_html(const Mesh& mesh, Run& run) {
+std::string pictures_html(const Mesh& mesh, ExecutionContext& context) {
   constexpr int width = 680, height = 560;
   const char* marks =
       "valence <i class=\"dot\" style=\"background:#1f6fd6\"></i>5 <i class=\"dot\" style=\"background:#d8352a\"></i>7 "
       "<i class=\"dot\" style=\"background:#8e35c0\"></i>other than 5, 6, 7";
-  const Gallery gallery(mesh, run);
+  const Gallery gallery(mesh, context);
   std::string html = gallery.figure({.width = width, .height = height}, marks);
   html += gallery.figure({.width = width, .height = height, .azimuth = 210}, "from the other side");
   html += gallery.figure({.width = width, .height = height, .quality_colours = true},
@@ -204,7 +205,8 @@ std::string tables_html(const Report& report) {
 
 }  // namespace
 
-std::string report_html(const MeshResult& result, const std::string& title, Run& run, const Artifacts& kept) {
+std::string report_html(const MeshResult& result, const std::string& title, ExecutionContext& context,
+                        const Artifacts& kept) {
   const std::string name = escape_html(title);
   std::string html =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
@@ -213,7 +215,7 @@ std::string report_html(const MeshResult& result, const std::string& title, Run&
   html += "<h1>" + name + "</h1><p class=\"lead\">Mesh report by evenmesh</p>\n";
   html += notices_html(result.report) + tiles_html(result.report) + "\n";
   if (!result.mesh.triangles.empty())
-    html += pictures_html(result.mesh, run) + "\n" + shell_html(result.mesh, kept) + charts_html(result) + "\n";
+    html += pictures_html(result.mesh, context) + "\n" + shell_html(result.mesh, kept) + charts_html(result) + "\n";
   html += tables_html(result.report) + "\n</main></body></html>\n";
   return html;
 }

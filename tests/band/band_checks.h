@@ -11,17 +11,17 @@
 
 namespace evenmesh {
 
-struct ShellOf {
+struct BandOf {
   SiteVoxels sites;
-  Shell shell;
-  ShellSurface surface;
+  NarrowBand band;
+  BandSurface surface;
 };
-inline ShellOf shell_of(const Mesh& mesh, std::size_t resolution, unsigned reach, unsigned threads = 2) {
-  Run run(threads);
-  ShellOf made;
-  made.sites = voxelize_mesh(mesh, make_voxel_grid(mesh.bounds(), resolution, reach + 2), run);
-  made.shell = build_shell(made.sites, reach, run);
-  made.surface = shell_surface(made.shell, made.sites, run);
+inline BandOf band_of(const Mesh& mesh, std::size_t resolution, unsigned reach, unsigned threads = 2) {
+  ExecutionContext context(threads);
+  BandOf made;
+  made.sites = voxelize_mesh(mesh, make_voxel_grid(mesh.bounds(), resolution, reach + 2), context);
+  made.band = build_narrow_band(made.sites, reach, context);
+  made.surface = band_surface(made.band, made.sites, context);
   return made;
 }
 
@@ -57,21 +57,22 @@ struct Bridged {
 };
 /// @param oriented  with the sphere's normals, or with estimated ones
 inline Bridged bridged(const PointCloud& cloud, bool oriented, std::size_t resolution, unsigned threads) {
-  Run run(threads);
+  ExecutionContext context(threads);
   Bridged made;
-  made.spacing = point_spacing(cloud, run);
+  made.spacing = point_spacing(cloud, context);
   const double h = cloud.bounds().longest_side() / static_cast<double>(resolution);
   const auto reach = static_cast<unsigned>(std::max(2.0, std::ceil(1.6 * made.spacing / h)));
   const VoxelGrid grid = make_voxel_grid(cloud.bounds(), resolution, reach + 2);
-  made.sparse = voxelize_points(cloud.points, oriented ? cloud.points : std::vector<Vec3>{}, grid, run);
-  if (!oriented) estimate_normals(made.sparse, 2 * reach, run);
-  made.sites = bridge_points(made.sparse, build_shell(made.sparse, reach, run), made.spacing, oriented, run);
+  made.sparse = voxelize_points(cloud.points, oriented ? cloud.points : std::vector<Vec3>{}, grid, context);
+  if (!oriented) estimate_normals(made.sparse, 2 * reach, context);
+  made.sites = moving_least_squares(made.sparse, build_narrow_band(made.sparse, reach, context), made.spacing, oriented,
+                                    context);
   return made;
 }
 
 /// Connected sets of voxels outside a shell that do not reach the grid's border.
-inline std::size_t cavities_of(const Shell& shell) {
-  const VoxelGrid& grid = shell.grid();
+inline std::size_t cavities_of(const NarrowBand& band) {
+  const VoxelGrid& grid = band.grid();
   const auto at = [&](const Voxel& v) {
     return (std::size_t(v[2]) * grid.size[1] + std::size_t(v[1])) * grid.size[0] + std::size_t(v[0]);
   };
@@ -79,7 +80,7 @@ inline std::size_t cavities_of(const Shell& shell) {
   std::size_t cavities = 0;
   std::vector<Voxel> stack;
   for_all_voxels(grid, [&](const Voxel& start) {
-    if (seen[at(start)] || shell.find(start) != nullptr) return;
+    if (seen[at(start)] || band.find(start) != nullptr) return;
     bool enclosed = true;
     seen[at(start)] = 1, stack.push_back(start);
     while (!stack.empty()) {
@@ -91,7 +92,7 @@ inline std::size_t cavities_of(const Shell& shell) {
           next[a] += step;
           if (!grid.contains(next)) {
             enclosed = false;
-          } else if (!seen[at(next)] && shell.find(next) == nullptr) {
+          } else if (!seen[at(next)] && band.find(next) == nullptr) {
             seen[at(next)] = 1, stack.push_back(next);
           }
         }

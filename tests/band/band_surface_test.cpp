@@ -5,28 +5,28 @@
 #include <numbers>
 #include <numeric>
 
+#include "band/band_checks.h"
 #include "band/moving_least_squares.h"
 #include "evenmesh/error.h"
 #include "evenmesh/points.h"
 #include "geometry/primitives.h"
 #include "grid/blocks.h"
-#include "shell_checks.h"
 
 namespace evenmesh {
 namespace {
 
 constexpr double pi = std::numbers::pi;
 
-TEST(ShellSurface, BoundsASolid) {
+TEST(BandSurface, BoundsASolid) {
   const Mesh meshes[] = {make_icosphere(3), make_torus(), make_grid_plane(3, 2), make_box({0.5, 0.3, 0.01})};
   for (const Mesh& mesh : meshes)
     for (const unsigned reach : {1u, 2u, 4u}) {
-      const ShellOf made = shell_of(mesh, 24, reach);
+      const BandOf made = band_of(mesh, 24, reach);
       const SampleSet& set = made.surface.samples;
       ASSERT_EQ(made.surface.site.size(), set.size());
       ASSERT_EQ(made.surface.facing.size(), set.size());
       const std::vector<bool> inside = expect_one_sign_grid(set);
-      EXPECT_EQ(static_cast<std::uint64_t>(std::count(inside.begin(), inside.end(), true)), made.shell.size());
+      EXPECT_EQ(static_cast<std::uint64_t>(std::count(inside.begin(), inside.end(), true)), made.band.size());
       std::size_t wrong = 0;
       for (std::size_t i = 0; i < set.size(); ++i)
         wrong += made.surface.site[i] >= made.sites.size() || !(std::abs(made.surface.facing[i]) <= 1.001f) ||
@@ -35,9 +35,9 @@ TEST(ShellSurface, BoundsASolid) {
     }
 }
 
-TEST(ShellSurface, IsTwoSpheresAroundASphere) {
+TEST(BandSurface, IsTwoSpheresAroundASphere) {
   for (const unsigned reach : {2u, 4u}) {
-    const ShellOf made = shell_of(make_icosphere(5), 48, reach);
+    const BandOf made = band_of(make_icosphere(5), 48, reach);
     const double h = made.sites.grid.side, d = (reach + 0.5) * h;
     expect_well_formed(made.surface.samples);
     EXPECT_NEAR(made.surface.samples.total_area, 4 * pi * ((1 + d) * (1 + d) + (1 - d) * (1 - d)), 0.03 * 8 * pi);
@@ -55,43 +55,43 @@ TEST(ShellSurface, IsTwoSpheresAroundASphere) {
   }
 }
 
-TEST(ShellSurface, DrawnOntoASphereLiesOnIt) {
-  const ShellOf made = shell_of(make_icosphere(5), 48, 2);
+TEST(BandSurface, DrawnOntoASphereLiesOnIt) {
+  const BandOf made = band_of(make_icosphere(5), 48, 2);
   // Those in front only: a subset, as for a sheet.
   SampleSet front = made.surface.samples;
   std::vector<std::uint32_t> index;
   for (std::uint32_t i = 0; i < made.surface.facing.size(); ++i)
     if (made.surface.facing[i] > 0) index.push_back(i);
   keep_samples(front, [&](std::uint32_t i) { return made.surface.facing[i] > 0; });
-  evenmesh::Run run(2);
-  const SampleSet drawn = drawn_onto_surface(front, index, made.surface, made.sites, run);
+  evenmesh::ExecutionContext context(2);
+  const SampleSet drawn = drawn_onto_surface(front, index, made.surface, made.sites, context);
   ASSERT_EQ(drawn.size(), front.size());
   double worst = 0;
   for_samples(drawn, [&](std::size_t, const Vec3& p) { worst = std::max(worst, std::abs(norm(p) - 1)); });
   EXPECT_LT(worst, made.sites.grid.side) << "within a voxel";
 }
 
-TEST(ShellSurface, SameBytesForAnyNumberOfThreads) {
-  const ShellOf one = shell_of(make_torus(), 40, 2, 1), three = shell_of(make_torus(), 40, 2, 3);
+TEST(BandSurface, SameBytesForAnyNumberOfThreads) {
+  const BandOf one = band_of(make_torus(), 40, 2, 1), three = band_of(make_torus(), 40, 2, 3);
   expect_same(one.surface.samples, three.surface.samples);
   EXPECT_TRUE(same_bytes(one.surface.site, three.surface.site));
   EXPECT_TRUE(same_bytes(one.surface.facing, three.surface.facing));
 }
 
-TEST(ShellSurface, OfNothingIsRefused) {
-  evenmesh::Run run(1);
+TEST(BandSurface, OfNothingIsRefused) {
+  evenmesh::ExecutionContext context(1);
   const VoxelGrid grid = make_voxel_grid({{0, 0, 0}, {1, 1, 1}}, 16, 3);
-  const SiteVoxels none = voxelize_mesh(translated(make_icosphere(1), {50, 0, 0}), grid, run);
+  const SiteVoxels none = voxelize_mesh(translated(make_icosphere(1), {50, 0, 0}), grid, context);
   ASSERT_EQ(none.size(), 0u);
-  EXPECT_THROW(shell_surface(build_shell(none, 2, run), none, run), UnusableInput);
+  EXPECT_THROW(band_surface(build_narrow_band(none, 2, context), none, context), UnusableInput);
 }
 
 TEST(EstimateNormals, AreThoseOfTheSurfaceEitherWayRound) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const PointCloud cloud = ball_of_points(8000);
   const VoxelGrid grid = make_voxel_grid(cloud.bounds(), 40, 6);
-  SiteVoxels sites = voxelize_points(cloud.points, {}, grid, run);
-  estimate_normals(sites, 4, run);
+  SiteVoxels sites = voxelize_points(cloud.points, {}, grid, context);
+  estimate_normals(sites, 4, context);
   ASSERT_EQ(sites.normal.size(), sites.size());
   double worst = 1;
   for_sites(sites, [&](std::size_t i, const Vec3& p) {
@@ -101,7 +101,7 @@ TEST(EstimateNormals, AreThoseOfTheSurfaceEitherWayRound) {
 }
 
 TEST(EstimateNormals, OfPlanesAreExactAndOfTooFewPointsAny) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   std::vector<Vec3> points;
   const Vec3 u = normalized({2, 1, 0}), v = normalized({-1, 2, 3}), n = normalized(cross(u, v));
   for (int i = 0; i < 30; ++i)
@@ -109,8 +109,8 @@ TEST(EstimateNormals, OfPlanesAreExactAndOfTooFewPointsAny) {
   Box box;
   for (const Vec3& p : points) box.add(p);
   points.push_back(box.lo + Vec3{0.1, 0.1, 0.1});  // alone in its corner, perhaps
-  SiteVoxels sites = voxelize_points(points, {}, make_voxel_grid(box, 30, 6), run);
-  estimate_normals(sites, 3, run);
+  SiteVoxels sites = voxelize_points(points, {}, make_voxel_grid(box, 30, 6), context);
+  estimate_normals(sites, 3, context);
   std::size_t off = 0;
   for_sites(sites, [&](std::size_t i, const Vec3&) {
     EXPECT_NEAR(norm(unpack_normal(sites.normal[i])), 1, 1e-3);
@@ -123,7 +123,7 @@ TEST(BridgePoints, MakeAClosedSphereOfRandomPoints) {
   for (const bool oriented : {true, false})
     for (const std::size_t resolution : {32u, 64u}) {
       SCOPED_TRACE(testing::Message() << oriented << ' ' << resolution);
-      evenmesh::Run run(2);
+      evenmesh::ExecutionContext context(2);
       const Bridged made = bridged(ball_of_points(3000), oriented, resolution, 2);
       const double h = made.sites.grid.side;
       expect_well_formed(made.sites);
@@ -137,7 +137,7 @@ TEST(BridgePoints, MakeAClosedSphereOfRandomPoints) {
       EXPECT_EQ(far, 0u);
       EXPECT_EQ(tilted, 0u);
       // Closed: a shell of one voxel separates inside from outside.
-      EXPECT_EQ(cavities_of(build_shell(made.sites, 1, run)), 1u);
+      EXPECT_EQ(cavities_of(build_narrow_band(made.sites, 1, context)), 1u);
     }
 }
 

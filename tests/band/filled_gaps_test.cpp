@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "band/band_checks.h"
 #include "geometry/primitives.h"
-#include "shell_checks.h"
 
 namespace evenmesh {
 namespace {
@@ -28,7 +28,7 @@ TEST(FilledGaps, TheThicknessThatKeepsSheetsApartIsSaid) {
       const Mesh mesh = both(square(n, 0), square(n, width));
       const SiteVoxels sites = voxelize_mesh(mesh, make_voxel_grid(mesh.bounds(), 60, 16));
       const double h = sites.grid.side;
-      const auto at = [&](unsigned d) { return filled_gaps(build_shell(sites, d), sites); };
+      const auto at = [&](unsigned d) { return filled_gaps(build_narrow_band(sites, d), sites); };
       const auto widest = at(12);
       ASSERT_EQ(widest.size(), 1u);
       EXPECT_NEAR(widest[0].width, width, 0.5 * h);
@@ -56,16 +56,16 @@ TEST(FilledGaps, CreasesAndHolesAreNone) {
                   {{0, 1, 2}, {0, 2, 3}, {1, 0, 5}, {1, 5, 4}}};
   for (const Mesh& mesh : {box, holed, roof})
     for (const unsigned d : {1u, 2u, 4u}) {
-      const ShellOf made = shell_of(mesh, 80, d);
-      EXPECT_TRUE(filled_gaps(made.shell, made.sites).empty()) << mesh.triangles.size() << " triangles, d " << d;
+      const BandOf made = band_of(mesh, 80, d);
+      EXPECT_TRUE(filled_gaps(made.band, made.sites).empty()) << mesh.triangles.size() << " triangles, d " << d;
     }
 }
 
 TEST(FilledGaps, SameForAnyNumberOfThreads) {
   const Mesh mesh = both(make_icosphere(3, 1.0), make_icosphere(3, 0.93));
-  const ShellOf made = shell_of(mesh, 100, 3);
-  evenmesh::Run one(1), many(5);
-  const auto a = filled_gaps(made.shell, made.sites, one), b = filled_gaps(made.shell, made.sites, many);
+  const BandOf made = band_of(mesh, 100, 3);
+  evenmesh::ExecutionContext one(1), many(5);
+  const auto a = filled_gaps(made.band, made.sites, one), b = filled_gaps(made.band, made.sites, many);
   ASSERT_FALSE(a.empty());
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {

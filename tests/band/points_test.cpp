@@ -77,14 +77,14 @@ TEST(PointSpacing, AFarPointDoesNoHarm) {
 
 TEST(PointSpacing, IsTheSameForAnyThreads) {
   const PointCloud cloud = ball(150'000);
-  evenmesh::Run one(1), two(2);
+  evenmesh::ExecutionContext one(1), two(2);
   EXPECT_EQ(point_spacing(cloud, one), point_spacing(cloud, two));
 }
 
 TEST(PointTree, FindsTheNearestOfAll) {
   PointCloud cloud = ball(700);
   for (int i = 0; i < 100; ++i) cloud.points.push_back({0.01 * i, 0.5, 0.5});  // and points of a line
-  const PointTree tree(cloud.points, Run::silent());
+  const PointTree tree(cloud.points, ExecutionContext::silent());
   ASSERT_EQ(tree.size(), cloud.points.size());
   Random random(2);
   for (int n = 0; n < 300; ++n) {
@@ -129,7 +129,7 @@ TEST(Outliers, AnEvenCloudHasNone) {
 
 TEST(Outliers, AreTheSameForAnyThreads) {
   const PointCloud cloud = ball(30'000);
-  evenmesh::Run one(1), two(2);
+  evenmesh::ExecutionContext one(1), two(2);
   EXPECT_EQ(remove_outliers(cloud, {.deviations = 1}, one).points,
             remove_outliers(cloud, {.deviations = 1}, two).points);
 }
@@ -141,9 +141,9 @@ TEST(Outliers, OptionsOutOfRangeAreRefused) {
   EXPECT_THROW(remove_outliers(cloud, {.deviations = -1}), InvalidInput);
   EXPECT_THROW(remove_outliers(cloud, {.deviations = std::nan("")}), InvalidInput);
   EXPECT_THROW(remove_outliers({cloud.points, {{0, 0, 1}}}), InvalidInput);
-  evenmesh::Run run;
-  run.cancel();
-  EXPECT_THROW(remove_outliers(cloud, {}, run), Cancelled);
+  evenmesh::ExecutionContext context;
+  context.cancel();
+  EXPECT_THROW(remove_outliers(cloud, {}, context), Cancelled);
 }
 
 }  // namespace

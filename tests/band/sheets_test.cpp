@@ -13,7 +13,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 struct Chosen {
-  ShellOf made;
+  BandOf made;
   Sheets sheets;
   SampleSet samples;  ///< the chosen ones, drawn onto the surface
 
@@ -31,16 +31,17 @@ struct Chosen {
   }
 };
 
-Chosen chosen(const Mesh& mesh, std::size_t resolution, unsigned threads = 2, double least_area = 0) {
-  evenmesh::Run run(threads);
-  Chosen result{shell_of(mesh, resolution, 2, threads), {}, {}};
-  result.sheets = choose_sheets(result.made.surface, result.made.sites, least_area, run);
+Chosen chosen(const Mesh& mesh, std::size_t resolution, unsigned threads = 2, double min_area = 0) {
+  evenmesh::ExecutionContext context(threads);
+  Chosen result{band_of(mesh, resolution, 2, threads), {}, {}};
+  result.sheets = choose_sheets(result.made.surface, result.made.sites, min_area, context);
   std::vector<std::uint32_t> index;
   for (std::uint32_t i = 0; i < result.sheets.chosen.size(); ++i)
     if (result.sheets.chosen[i]) index.push_back(i);
   result.samples = result.made.surface.samples;
   keep_samples(result.samples, [&](std::uint32_t i) { return result.sheets.chosen[i] != 0; });
-  result.samples = drawn_onto_surface(std::move(result.samples), index, result.made.surface, result.made.sites, run);
+  result.samples =
+      drawn_onto_surface(std::move(result.samples), index, result.made.surface, result.made.sites, context);
   return result;
 }
 
@@ -73,13 +74,13 @@ double farthest_site(const Chosen& c) {
 
 TEST(Sheets, ShellsAreSolids) {
   // Of a closed surface two parts; of an open one, whatever its genus, one.
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const struct {
     Mesh mesh;
     std::size_t parts;
   } known[] = {{make_icosphere(3), 2}, {make_torus(), 2}, {make_grid_plane(3, 2), 1}};
   for (const auto& [mesh, parts] : known) {
-    const SurfaceParts found = surface_parts(shell_of(mesh, 40, 2).surface.samples, run);
+    const SurfaceComponents found = surface_components(band_of(mesh, 40, 2).surface.samples, context);
     EXPECT_EQ(found.area.size(), parts);
   }
 }
@@ -163,12 +164,12 @@ TEST(Sheets, SmallOnesAreDropped) {
 }
 
 TEST(Sheets, OuterSidesAreClosed) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   // A ball within a ball, and a plate beside them: what floods in from outside sees the larger ball and the plate.
   Mesh mesh = merged(make_icosphere(4), make_icosphere(3, 0.5));
   mesh = merged(mesh, plate({1.5, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}));
-  const ShellOf made = shell_of(mesh, 80, 2);
-  const Sheets outer = outer_sheets(made.surface, run);
+  const BandOf made = band_of(mesh, 80, 2);
+  const Sheets outer = outer_sheets(made.surface, context);
   EXPECT_EQ(std::count(outer.border.begin(), outer.border.end(), 1), 0);
   std::size_t inward = 0;
   for_samples(made.surface.samples, [&](std::size_t i, const Vec3& p) {
@@ -177,7 +178,7 @@ TEST(Sheets, OuterSidesAreClosed) {
   EXPECT_EQ(inward, 0u);
   SampleSet kept = made.surface.samples;
   keep_samples(kept, [&](std::uint32_t i) { return outer.chosen[i] != 0; });
-  EXPECT_EQ(surface_parts(kept, run).area.size(), outer.sheets) << "whole parts bound a solid";
+  EXPECT_EQ(surface_components(kept, context).area.size(), outer.sheets) << "whole parts bound a solid";
 }
 
 TEST(Sheets, SameForAnyNumberOfThreads) {

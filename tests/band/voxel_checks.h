@@ -15,7 +15,7 @@
 #include "band/voxelize.h"
 #include "core/random.h"
 #include "grid/morton.h"
-#include "sample_checks.h"
+#include "grid/sample_checks.h"
 
 namespace evenmesh {
 

@@ -6,7 +6,7 @@
 #include "geometry/primitives.h"
 #include "geometry/triangle.h"
 #include "sample/sample.h"
-#include "test_fields.h"
+#include "sample/test_fields.h"
 #include "voxel_checks.h"
 
 namespace evenmesh {
@@ -159,7 +159,7 @@ TEST(VoxelizeMesh, SurfacePointsAreTheNearestOnes) {
 TEST(VoxelizeMesh, ThreadsDoNotMatter) {
   const Mesh mesh = merged(make_torus(), translated(make_icosphere(3), {0.5, 0.2, 0.1}));
   const VoxelGrid grid = make_voxel_grid(mesh.bounds(), 90, 4);
-  evenmesh::Run one(1), two(2);
+  evenmesh::ExecutionContext one(1), two(2);
   const SiteVoxels sites = voxelize_mesh(mesh, grid, one);
   expect_same(sites, voxelize_mesh(mesh, grid, two));
   expect_well_formed(sites);
@@ -214,7 +214,7 @@ TEST(VoxelizePoints, ThreadsDoNotMatter) {
   std::vector<Vec3> points(200000);
   for (Vec3& p : points) p = {random.uniform(), random.uniform(), random.uniform()};
   const VoxelGrid grid = make_voxel_grid({{0, 0, 0}, {1, 1, 1}}, 40, 1);
-  evenmesh::Run one(1), two(2);
+  evenmesh::ExecutionContext one(1), two(2);
   const SiteVoxels sites = voxelize_points(points, points, grid, one);
   expect_same(sites, voxelize_points(points, points, grid, two));
   expect_well_formed(sites);
@@ -242,7 +242,7 @@ void expect_crossed_voxels(const SiteVoxels& sites, const Inside& inside) {
 TEST(VoxelizeField, MarksTheVoxelsThatTheSurfaceCrosses) {
   const BallField ball;
   const VoxelGrid grid = make_voxel_grid({{-1, -1, -1}, {1, 1, 1}}, 40, 4);
-  evenmesh::Run one(1), two(2);
+  evenmesh::ExecutionContext one(1), two(2);
   const SiteVoxels sites = voxelize_field(ball, grid, {}, one);
   expect_same(sites, voxelize_field(ball, grid, {}, two));
   expect_well_formed(sites);

@@ -12,14 +12,14 @@
 namespace evenmesh {
 
 inline SampleSet sampled_gallery(const std::string& name, std::size_t resolution) {
-  Run run(2);
+  ExecutionContext context(2);
   const Shape shape = gallery_shape(name);
-  return sample_shape(shape, make_grid(shape.bounds, resolution), run);
+  return sample_shape(shape, make_grid(shape.bounds, resolution), context);
 }
 
 inline std::vector<std::uint32_t> nearest_labels(const SampleSet& samples, const std::vector<Vec3>& seeds) {
-  Run run(2);
-  CellEvaluator evaluator(samples, run);
+  ExecutionContext context(2);
+  CellEvaluator evaluator(samples, context);
   std::vector<std::uint32_t> labels;
   evaluator.nearest(seeds, labels);
   return labels;
@@ -44,7 +44,7 @@ inline bool is_closed_manifold(const std::vector<Triangle>& triangles, std::size
   for (std::size_t h = 0; h < 3 * triangles.size(); ++h)
     if (edges.opposite(h) == HalfEdges::none) return false;
   for (std::size_t v = 0; v < vertices; ++v)
-    if (edges.fans(v) > 1) return false;
+    if (edges.umbrellas(v) > 1) return false;
   return true;
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 Fragments fragments_of(const SampleSet& samples, const std::vector<Vec3>& seeds, FragmentOptions options = {},
                        unsigned threads = 2) {
-  evenmesh::Run run(threads);
-  return with_threads(run, [&] { return connect_fragments(samples, seeds, options, run); });
+  evenmesh::ExecutionContext context(threads);
+  return with_threads(context, [&] { return connect_fragments(samples, seeds, options, context); });
 }
 
 /// Each triangle once, of three different seeds.
@@ -58,7 +58,7 @@ TEST(Fragments, EdgesAreThoseOfTheDefinition) {
   const SampleSet torus = sampled_gallery("torus", 40), ball = sampled(make_icosphere(3), 30);
   for (const SampleSet* samples : {&torus, &ball})
     for (const std::size_t count : {std::size_t{2}, std::size_t{3}, std::size_t{17}, std::size_t{150}}) {
-      const std::vector<Vec3> seeds = shaken_seeds(*samples, count, 0.02, count);
+      const std::vector<Vec3> seeds = perturbed_seeds(*samples, count, 0.02, count);
       const Fragments fragments = fragments_of(*samples, seeds);
       const auto [delaunay, candidates] = edges_by_brute_force(*samples, seeds);
       EXPECT_EQ(fragments.delaunay, std::vector<SeedEdge>(delaunay.begin(), delaunay.end())) << count;
@@ -140,15 +140,15 @@ TEST(Fragments, BalancedCellsHaveTheTopologyOfTheSurface) {
   for (const auto& [name, resolution, count] :
        {std::tuple{"torus", 80, 300}, std::tuple{"tangle", 120, 800}, std::tuple{"octic", 150, 2500}}) {
     const SampleSet samples = sampled_gallery(name, static_cast<std::size_t>(resolution));
-    const std::vector<Vec3> seeds = balanced_seeds(samples, static_cast<std::size_t>(count));
+    const std::vector<Vec3> seeds = relaxed_seeds(samples, static_cast<std::size_t>(count));
     const Fragments fragments = fragments_of(samples, seeds);
     const LabelComplex& complex = fragments.complex;
     expect_different_triangles(complex.triangles);
     EXPECT_TRUE(complex.defects.empty()) << name << ", " << complex.defects.size();
     EXPECT_TRUE(is_closed_manifold(complex.triangles, seeds.size())) << name;
-    evenmesh::Run run(2);
+    evenmesh::ExecutionContext context(2);
     std::vector<std::uint32_t> labels = nearest_labels(samples, seeds);
-    EXPECT_EQ(euler_of(complex.triangles), connect_labels(samples, labels, seeds, run).surface_euler) << name;
+    EXPECT_EQ(euler_of(complex.triangles), connect_labels(samples, labels, seeds, context).surface_euler) << name;
     const auto& edges = complex.edges_by_cycle;
     EXPECT_EQ(2 * std::accumulate(edges.begin(), edges.end(), std::size_t{0}), 3 * complex.triangles.size());
     EXPECT_GT(edges[0], 20 * (edges[1] + edges[2]));
@@ -164,7 +164,7 @@ TEST(Fragments, BalancedCellsHaveTheTopologyOfTheSurface) {
 TEST(Fragments, NeedNoSolid) {
   // A third of the samples has gone at random: no inside is left, but the cells still meet.
   SampleSet samples = sampled_gallery("torus", 100);
-  const std::vector<Vec3> seeds = balanced_seeds(samples, 250);
+  const std::vector<Vec3> seeds = relaxed_seeds(samples, 250);
   Random random(3);
   keep_samples(samples, [&](std::uint32_t) { return random.below(3) > 0; });
   const Fragments fragments = fragments_of(samples, seeds);
@@ -178,7 +178,7 @@ TEST(Fragments, OpenSurfacesHaveABoundary) {
   SampleSet samples = sampled(make_icosphere(5), 80);
   const auto points = positions_of(samples);
   keep_samples(samples, [&](std::uint32_t i) { return points[i].z > 0; });
-  const std::vector<Vec3> seeds = balanced_seeds(samples, 200);
+  const std::vector<Vec3> seeds = relaxed_seeds(samples, 200);
   const Fragments fragments = fragments_of(samples, seeds, {.open = true});
   EXPECT_TRUE(fragments.complex.defects.empty());
   EXPECT_EQ(euler_of(fragments.complex.triangles), 1);

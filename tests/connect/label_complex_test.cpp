@@ -18,9 +18,9 @@ struct Connected {
 };
 
 Connected connected(const SampleSet& samples, const std::vector<Vec3>& seeds, unsigned threads = 2) {
-  evenmesh::Run run(threads);
+  evenmesh::ExecutionContext context(threads);
   Connected c{nearest_labels(samples, seeds), {}};
-  c.complex = with_threads(run, [&] { return connect_labels(samples, c.labels, seeds, run); });
+  c.complex = with_threads(context, [&] { return connect_labels(samples, c.labels, seeds, context); });
   return c;
 }
 
@@ -125,8 +125,8 @@ TEST(LabelComplex, RandomLabelsAreAManifoldOrTold) {
       Random random(seed);
       std::vector<std::uint32_t> labels(samples.size());
       for (std::size_t i = 0; i < labels.size(); ++i) labels[i] = static_cast<std::uint32_t>(random.below(count));
-      evenmesh::Run run(2);
-      const LabelComplex complex = connect_labels(samples, labels, seeds, run);
+      evenmesh::ExecutionContext context(2);
+      const LabelComplex complex = connect_labels(samples, labels, seeds, context);
       expect_kept_promises(samples, labels, seeds, complex);
       EXPECT_EQ(complex.surface_euler, 0);
     }
@@ -140,7 +140,7 @@ TEST(LabelComplex, BothSidesOfAThinPlateBecomeCellsOfTheirOwn) {
     for (int j = 0; j < 5; ++j) seeds.push_back({0.2 * i - 0.4, 0.2 * j - 0.4 + 1e-4 * i, 0});
   const Connected c = connected(samples, seeds);
   ASSERT_EQ(c.complex.pieces.size(), 9u) << "cells at the rim hang together around it, the others do not";
-  for (const CellPiece& piece : c.complex.pieces) {
+  for (const CellComponent& piece : c.complex.pieces) {
     EXPECT_NEAR(piece.area, 0.04, 0.002);
     EXPECT_NEAR(std::abs(piece.centroid.z), half_thickness, 1e-3);
     EXPECT_LT(norm(Vec3{piece.centroid.x, piece.centroid.y, 0} - seeds[piece.label]), 0.01);
@@ -164,11 +164,11 @@ TEST(LabelComplex, TinyPiecesGoToTheirNeighbour) {
   for (std::size_t i = 0; i < labels.size(); ++i)
     if (norm(points[i] - seeds[labels[i]]) < samples.grid.spacing) speckled[i] = (labels[i] + 50) % 100;
   ASSERT_NE(speckled, labels);
-  evenmesh::Run run(2);
-  const LabelComplex complex = connect_labels(samples, speckled, seeds, run);
+  evenmesh::ExecutionContext context(2);
+  const LabelComplex complex = connect_labels(samples, speckled, seeds, context);
   // Both hand over what nearest() leaves of cells beyond a corner; defects may still name the cells that had holes.
   auto clean = labels;
-  auto expected = connect_labels(samples, clean, seeds, run).triangles;
+  auto expected = connect_labels(samples, clean, seeds, context).triangles;
   EXPECT_TRUE(complex.pieces.empty());
   EXPECT_EQ(speckled, clean);
   auto triangles = complex.triangles;
@@ -180,13 +180,13 @@ TEST(LabelComplex, TinyPiecesGoToTheirNeighbour) {
 TEST(LabelComplex, FrayedBordersAreAManifoldOrTold) {
   const SampleSet sets[] = {sampled(make_torus(), 40), sampled_gallery("tangle", 50),
                             sampled(make_box({0.5, 0.5, 0.05}), 40)};
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   std::size_t good = 0;
   for (const SampleSet& samples : sets)
     for (std::uint64_t seed = 1; seed <= 12; ++seed)
       for (const double width : {0.5, 1.0, 2.0}) {
         const auto seeds = blue_noise_start(samples, samples.size() / 60, seed);
-        CellEvaluator evaluator(samples, run);
+        CellEvaluator evaluator(samples, context);
         std::vector<NearestPair> pairs;
         evaluator.nearest_pairs(seeds, pairs);
         std::vector<std::uint32_t> labels(samples.size());
@@ -195,7 +195,7 @@ TEST(LabelComplex, FrayedBordersAreAManifoldOrTold) {
           const bool frayed = pairs[i].bisector_distance < width * samples.grid.spacing && random.below(3) == 0;
           labels[i] = frayed ? pairs[i].second : pairs[i].first;
         }
-        const LabelComplex complex = connect_labels(samples, labels, seeds, run);
+        const LabelComplex complex = connect_labels(samples, labels, seeds, context);
         good += expect_kept_promises(samples, labels, seeds, complex);
       }
   EXPECT_GT(good, 0u);
@@ -220,10 +220,10 @@ TEST(LabelComplex, SameBitsForAnyNumberOfThreads) {
 
 TEST(LabelComplex, HeldSeedsKeepThePieceTheyLieOn) {
   // A thin plate with one cell that has a small piece above and a large one below.
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const Shape plate =
       shape_from_expression("max(abs(x), abs(y), 10*abs(z)) - 1", {}, Box{{-1.1, -1.1, -1.1}, {1.1, 1.1, 1.1}});
-  const SampleSet samples = sample_shape(plate, make_grid(plate.bounds, 64), run);
+  const SampleSet samples = sample_shape(plate, make_grid(plate.bounds, 64), context);
   const std::vector<Vec3> seeds{{0, 0, 0.1}, {0.7, 0, 0}, {-0.7, 0, 0}, {0, 0.7, 0}, {0, -0.7, 0}};
   const auto places = positions_of(samples);
   const auto above = [&](std::size_t s) { return places[s].z > 0 && norm(places[s] - seeds[0]) < 0.25; };
@@ -235,11 +235,11 @@ TEST(LabelComplex, HeldSeedsKeepThePieceTheyLieOn) {
     else if (labels[s] == 0)
       labels[s] = places[s].x > 0 ? 1 : 2;
   }
-  for (const std::size_t held : {0u, 1u}) {
+  for (const std::size_t fixed : {0u, 1u}) {
     std::vector<std::uint32_t> now = labels;
-    const LabelComplex complex = connect_labels(samples, now, seeds, run, held);
+    const LabelComplex complex = connect_labels(samples, now, seeds, context, fixed);
     ASSERT_FALSE(complex.pieces.empty());
-    for (std::size_t s = 0; s < now.size(); ++s) EXPECT_TRUE(!above(s) || (now[s] == 0) == (held == 1));
+    for (std::size_t s = 0; s < now.size(); ++s) EXPECT_TRUE(!above(s) || (now[s] == 0) == (fixed == 1));
   }
 }
 

@@ -40,15 +40,15 @@ struct Part {
 /// Balanced cells of a whole surface; samples where keep(position) is false lose their label.
 template <typename Keep>
 Part part_of(const Mesh& mesh, std::size_t count, const Keep& keep, unsigned threads = 2) {
-  evenmesh::Run run(threads);
+  evenmesh::ExecutionContext context(threads);
   Part part;
   part.samples = sampled(mesh, 60);
-  part.seeds = balanced_seeds(part.samples, count);
+  part.seeds = relaxed_seeds(part.samples, count);
   part.labels = nearest_labels(part.samples, part.seeds);
   const auto points = positions_of(part.samples);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!keep(points[i])) part.labels[i] = no_label;
-  part.complex = with_threads(run, [&] { return connect_labels(part.samples, part.labels, part.seeds, run); });
+  part.complex = with_threads(context, [&] { return connect_labels(part.samples, part.labels, part.seeds, context); });
   return part;
 }
 
@@ -151,9 +151,9 @@ TEST(ManifoldDefects, OpenLetsSeveralFansMeet) {
 
 TEST(Pillows, AreTakenOutAndNothingElse) {
   std::vector<Triangle> triangles{{0, 1, 2}, {2, 1, 0}, {3, 4, 5}, {3, 5, 6}, {3, 6, 4}, {4, 6, 5}};
-  EXPECT_EQ(remove_pillows(triangles, 7), 1u);
+  EXPECT_EQ(remove_two_triangle_spheres(triangles, 7), 1u);
   EXPECT_EQ(triangles, (std::vector<Triangle>{{3, 4, 5}, {3, 5, 6}, {3, 6, 4}, {4, 6, 5}}));
-  EXPECT_EQ(remove_pillows(triangles, 7), 0u);
+  EXPECT_EQ(remove_two_triangle_spheres(triangles, 7), 0u);
 }
 
 }  // namespace

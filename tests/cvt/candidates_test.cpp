@@ -12,8 +12,8 @@ Vec3 random_step(Random& random) {
 
 /// One evaluator that has seen all earlier seeds, against one that sees these for the first time.
 void expect_as_fresh(CellEvaluator& kept, const SampleSet& samples, const std::vector<Vec3>& seeds) {
-  evenmesh::Run run(1);
-  CellEvaluator fresh(samples, run);
+  evenmesh::ExecutionContext context(1);
+  CellEvaluator fresh(samples, context);
   CellSums one, other;
   kept.evaluate(seeds, one), fresh.evaluate(seeds, other);
   EXPECT_EQ(one.energy, other.energy);
@@ -25,14 +25,14 @@ void expect_as_fresh(CellEvaluator& kept, const SampleSet& samples, const std::v
 }
 
 TEST(Candidates, StayCompleteWhileSeedsMove) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet sets[] = {sampled(make_torus(), 40), sampled(make_box({1, 0.6, 0.05}), 40)};
   for (const SampleSet& samples : sets) {
     const double spacing = spacing_of(samples, 120);
     // Steps in seed spacings: creeping, within margins, beyond them, leaps.
     for (const double step : {0.001, 0.03, 0.15, 0.6, 3.0}) {
       SCOPED_TRACE(step);
-      CellEvaluator kept(samples, run);
+      CellEvaluator kept(samples, context);
       std::vector<Vec3> seeds = random_start(samples, 120, 1);
       Random random(9);
       for (int round = 0; round < 12; ++round) {
@@ -44,10 +44,10 @@ TEST(Candidates, StayCompleteWhileSeedsMove) {
 }
 
 TEST(Candidates, StayCompleteWhenFewSeedsStray) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_torus(), 48);
   const double spacing = spacing_of(samples, 200);
-  CellEvaluator kept(samples, run);
+  CellEvaluator kept(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 200, 2);
   Random random(4);
   for (int round = 0; round < 40; ++round) {
@@ -61,9 +61,9 @@ TEST(Candidates, StayCompleteWhenFewSeedsStray) {
 }
 
 TEST(Candidates, FollowSeedsThatComeAndGo) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_icosphere(3), 40);
-  CellEvaluator kept(samples, run);
+  CellEvaluator kept(samples, context);
   for (const std::size_t count : {100u, 101u, 100u, 1u, 2u, 400u, 3u}) {
     SCOPED_TRACE(count);
     expect_as_fresh(kept, samples, random_start(samples, count, count));
@@ -71,15 +71,15 @@ TEST(Candidates, FollowSeedsThatComeAndGo) {
 }
 
 TEST(Candidates, NearestTwoAreAlwaysAmongThem) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_torus(), 32);
   const auto points = positions_of(samples);
-  CandidateLists lists(samples, run);
+  CandidateLists lists(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 80, 5);
   const double spacing = spacing_of(samples, seeds.size());
   Random random(6);
   for (int round = 0; round < 15; ++round) {
-    lists.update(seeds, run);
+    lists.update(seeds, context);
     std::size_t missing = 0, unsorted = 0;
     for (std::size_t b = 0; b < samples.blocks.size(); ++b) {
       const auto list = lists.of_block(b);

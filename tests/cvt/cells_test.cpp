@@ -57,10 +57,10 @@ void expect_nearest(CellEvaluator& evaluator, const std::vector<Vec3>& points, c
 }
 
 TEST(Cells, MassesAddUpToTheAreaAndCentroidsLieInTheBox) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   for (const SampleSet& samples : surfaces()) {
-    CellEvaluator evaluator(samples, run);
-    const auto seeds = shaken_seeds(samples, 150, 0, 3);
+    CellEvaluator evaluator(samples, context);
+    const auto seeds = perturbed_seeds(samples, 150, 0, 3);
     CellSums sums;
     evaluator.evaluate(seeds, sums);
     double mass = 0;
@@ -82,9 +82,9 @@ TEST(Cells, MassesAddUpToTheAreaAndCentroidsLieInTheBox) {
 }
 
 TEST(Cells, EnergyOfOneSeedIsTheSecondMoment) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(4), 40);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   CellSums sums;
   evaluator.evaluate(std::vector<Vec3>{{0, 0, 0}}, sums);
   EXPECT_NEAR(sums.energy, 4 * std::numbers::pi, 0.01 * 4 * std::numbers::pi);  // all at distance 1
@@ -95,10 +95,10 @@ TEST(Cells, EnergyOfOneSeedIsTheSecondMoment) {
 }
 
 TEST(Cells, GradientAgreesWithFiniteDifferences) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(4), 64);
-  CellEvaluator evaluator(samples, run);
-  std::vector<Vec3> seeds = balanced_seeds(samples, 60);
+  CellEvaluator evaluator(samples, context);
+  std::vector<Vec3> seeds = relaxed_seeds(samples, 60);
   const double spacing = spacing_of(samples, seeds.size()), step = 0.01 * spacing;
   Random random(5);
   const auto random_vector = [&] {
@@ -129,23 +129,23 @@ TEST(Cells, GradientAgreesWithFiniteDifferences) {
 }
 
 TEST(Cells, NearestSeedsAreThoseOfTryingAll) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   for (const SampleSet& samples : surfaces()) {
     const auto points = positions_of(samples);
     for (const std::size_t count : {1u, 2u, 3u, 7u, 60u, 400u}) {
-      CellEvaluator evaluator(samples, run);
+      CellEvaluator evaluator(samples, context);
       const double spacing = spacing_of(samples, count);
-      expect_nearest(evaluator, points, shaken_seeds(samples, count, 0.05 * spacing, count));
-      expect_nearest(evaluator, points, shaken_seeds(samples, count, 2 * spacing, count));  // far from the surface
+      expect_nearest(evaluator, points, perturbed_seeds(samples, count, 0.05 * spacing, count));
+      expect_nearest(evaluator, points, perturbed_seeds(samples, count, 2 * spacing, count));  // far from the surface
     }
   }
 }
 
 TEST(Cells, ListsStayCompleteWhileSeedsMove) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_torus(), 40);
   const auto points = positions_of(samples);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 120, 1);
   const double spacing = spacing_of(samples, seeds.size());
   Random random(11);
@@ -165,9 +165,9 @@ TEST(Cells, ListsStayCompleteWhileSeedsMove) {
 }
 
 TEST(Cells, EquallyNearSeedsGiveTheLowerIndex) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(3), 32);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 40, 2);
   const std::size_t half = seeds.size();
   for (std::size_t i = 0; i < half; ++i) seeds.push_back(seeds[i]);
@@ -192,9 +192,9 @@ TEST(Cells, EquallyNearSeedsGiveTheLowerIndex) {
 }
 
 TEST(Cells, BisectorDistanceIsThatOfThePlane) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_torus(), 32);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   const auto seeds = random_start(samples, 90, 4);
   std::vector<NearestPair> pairs;
   evaluator.nearest_pairs(seeds, pairs);
@@ -213,9 +213,9 @@ TEST(Cells, SameBitsForAnyNumberOfThreads) {
   std::vector<CellSums> sums(3);
   std::vector<std::vector<std::uint32_t>> labels(3);
   for (unsigned t = 0; t < 3; ++t) {
-    evenmesh::Run run(t + 1);
-    CellEvaluator evaluator(samples, run);
-    with_threads(run, [&] {
+    evenmesh::ExecutionContext context(t + 1);
+    CellEvaluator evaluator(samples, context);
+    with_threads(context, [&] {
       evaluator.evaluate(seeds, sums[t]);
       evaluator.nearest(seeds, labels[t]);
     });
@@ -229,14 +229,14 @@ TEST(Cells, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Cells, ResultsDoNotDependOnEarlierCalls) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(3), 40);
   const auto seeds = random_start(samples, 200, 1);
   CellSums fresh, used;
-  CellEvaluator first(samples, run);
+  CellEvaluator first(samples, context);
   first.evaluate(seeds, fresh);
-  CellEvaluator second(samples, run);
-  for (int n = 0; n < 3; ++n) second.evaluate(shaken_seeds(samples, 200, 0.01, 1), used);
+  CellEvaluator second(samples, context);
+  for (int n = 0; n < 3; ++n) second.evaluate(perturbed_seeds(samples, 200, 0.01, 1), used);
   second.evaluate(random_start(samples, 77, 3), used);
   second.evaluate(seeds, used);
   EXPECT_TRUE(same_bytes(fresh.mass, used.mass));
@@ -246,9 +246,9 @@ TEST(Cells, ResultsDoNotDependOnEarlierCalls) {
 
 TEST(Cells, CancelTakesEffect) {
   const SampleSet samples = sampled(make_icosphere(2), 24);
-  evenmesh::Run run(1);
-  CellEvaluator evaluator(samples, run);
-  run.cancel();
+  evenmesh::ExecutionContext context(1);
+  CellEvaluator evaluator(samples, context);
+  context.cancel();
   CellSums sums;
   EXPECT_THROW(evaluator.evaluate(random_start(samples, 20, 1), sums), Cancelled);
 }

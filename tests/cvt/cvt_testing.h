@@ -21,8 +21,8 @@ inline std::vector<Vec3> positions_of(const SampleSet& samples) {
 }
 
 /// Seeds somewhere near the surface: drawn by area, then shaken by `amplitude` (model units).
-inline std::vector<Vec3> shaken_seeds(const SampleSet& samples, std::size_t count, double amplitude,
-                                      std::uint64_t seed) {
+inline std::vector<Vec3> perturbed_seeds(const SampleSet& samples, std::size_t count, double amplitude,
+                                         std::uint64_t seed) {
   std::vector<Vec3> seeds = random_start(samples, count, seed);
   Random random(seed + 100);
   for (Vec3& s : seeds) {
@@ -32,10 +32,10 @@ inline std::vector<Vec3> shaken_seeds(const SampleSet& samples, std::size_t coun
   return seeds;
 }
 
-inline std::vector<Vec3> balanced_seeds(const SampleSet& samples, std::size_t count, std::size_t evaluations = 40) {
-  Run run(1);
-  CellEvaluator evaluator(samples, run);
-  return balance_seeds(evaluator, count, {.evaluations = evaluations}, run).seeds;
+inline std::vector<Vec3> relaxed_seeds(const SampleSet& samples, std::size_t count, std::size_t evaluations = 40) {
+  ExecutionContext context(1);
+  CellEvaluator evaluator(samples, context);
+  return relax_seeds(evaluator, count, {.evaluations = evaluations}, context).seeds;
 }
 
 /// Mean distance between neighbouring seeds, about.

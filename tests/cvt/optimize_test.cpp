@@ -6,14 +6,14 @@ namespace evenmesh {
 namespace {
 
 TEST(Optimize, LowersTheEnergyStepByStep) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_torus(), 64);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 120, 1);
   CellSums sums;
   evaluator.evaluate(seeds, sums);
   const double start = sums.energy;
-  const OptimizeResult result = optimize(evaluator, seeds, {.evaluations = 60}, run);
+  const OptimizeResult result = optimize(evaluator, seeds, {.evaluations = 60}, context);
   evaluator.evaluate(seeds, sums);
   EXPECT_EQ(result.energy, sums.energy) << "the energy told is that of the seeds returned";
   ASSERT_FALSE(result.ratios.empty());
@@ -25,70 +25,70 @@ TEST(Optimize, LowersTheEnergyStepByStep) {
 }
 
 TEST(Optimize, LloydLowersTheEnergyInEveryStep) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_icosphere(4), 64);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 100, 1);
-  const auto ratios = optimize(evaluator, seeds, {.lloyd = true, .evaluations = 40}, run).ratios;
+  const auto ratios = optimize(evaluator, seeds, {.lloyd = true, .evaluations = 40}, context).ratios;
   ASSERT_EQ(ratios.size(), 40u);
   for (std::size_t i = 1; i < ratios.size(); ++i) EXPECT_LT(ratios[i], ratios[i - 1] * (1 + 1e-4));
   EXPECT_LT(ratios.back(), 0.9 * ratios.front());
 }
 
 TEST(Optimize, QuasiNewtonBeatsLloydForTheSameWork) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_icosphere(4), 64);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   double ratio[2];
   for (const bool lloyd : {false, true}) {
     std::vector<Vec3> seeds = random_start(samples, 100, 1);
-    const auto result = optimize(evaluator, seeds, {.lloyd = lloyd, .evaluations = 60}, run);
+    const auto result = optimize(evaluator, seeds, {.lloyd = lloyd, .evaluations = 60}, context);
     ratio[lloyd] = energy_ratio(result.energy, 100, samples.total_area);
   }
   EXPECT_LE(ratio[0], ratio[1] + 0.002);
 }
 
 TEST(Optimize, StopsWhereNothingMovesAnyMore) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(3), 40);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 30, 1);
-  optimize(evaluator, seeds, {.evaluations = 200, .tolerance = 1e-3}, run);
+  optimize(evaluator, seeds, {.evaluations = 200, .tolerance = 1e-3}, context);
   const std::vector<Vec3> rest = seeds;
-  EXPECT_LE(optimize(evaluator, seeds, {.evaluations = 200, .tolerance = 1e-2}, run).ratios.size(), 2u);
+  EXPECT_LE(optimize(evaluator, seeds, {.evaluations = 200, .tolerance = 1e-2}, context).ratios.size(), 2u);
   for (std::size_t i = 0; i < seeds.size(); ++i) EXPECT_LT(norm(seeds[i] - rest[i]), 0.1 * spacing_of(samples, 30));
 }
 
 TEST(Optimize, NoEvaluationsLeaveTheSeedsAlone) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(2), 24);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 20, 1);
   const std::vector<Vec3> before = seeds;
-  EXPECT_TRUE(optimize(evaluator, seeds, {.evaluations = 0}, run).ratios.empty());
+  EXPECT_TRUE(optimize(evaluator, seeds, {.evaluations = 0}, context).ratios.empty());
   EXPECT_EQ(seeds, before);
-  EXPECT_EQ(optimize(evaluator, seeds, {.evaluations = 1}, run).ratios.size(), 1u);
+  EXPECT_EQ(optimize(evaluator, seeds, {.evaluations = 1}, context).ratios.size(), 1u);
   EXPECT_EQ(seeds, before);
 }
 
 TEST(Optimize, SeedsWithoutSamplesDoNotHarm) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(3), 40);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 40, 1);
   for (int n = 0; n < 5; ++n) seeds.push_back(seeds[static_cast<std::size_t>(n)]);  // twins
   for (int n = 0; n < 5; ++n) seeds.push_back({40.0 + n, 30, 20});                  // far away, nearest to nothing
-  optimize(evaluator, seeds, {.evaluations = 30}, run);
+  optimize(evaluator, seeds, {.evaluations = 30}, context);
   for (const Vec3& s : seeds) EXPECT_TRUE(is_finite(s));
 }
 
 TEST(Optimize, CancelStopsIt) {
   const SampleSet samples = sampled(make_icosphere(2), 24);
-  evenmesh::Run run(1);
-  CellEvaluator evaluator(samples, run);
+  evenmesh::ExecutionContext context(1);
+  CellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 20, 1);
-  run.cancel();
-  EXPECT_THROW(optimize(evaluator, seeds, {}, run), Cancelled);
+  context.cancel();
+  EXPECT_THROW(optimize(evaluator, seeds, {}, context), Cancelled);
 }
 
 }  // namespace

@@ -7,27 +7,27 @@ namespace evenmesh {
 namespace {
 
 TEST(Balance, ConvergedRatioIsNearThatOfHexagons) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const Mesh meshes[] = {make_icosphere(5), make_torus(1, 0.4, 96, 48), make_box({1, 1, 0.4})};
   for (const Mesh& mesh : meshes) {
     const SampleSet samples = sampled(mesh, 110, 2);
-    CellEvaluator evaluator(samples, run);
-    const BalanceResult result = balance_seeds(evaluator, 400, {.evaluations = 60}, run);
+    CellEvaluator evaluator(samples, context);
+    const RelaxResult result = relax_seeds(evaluator, 400, {.evaluations = 60}, context);
     EXPECT_LT(result.energy_ratio, 1.03);
     EXPECT_GE(result.energy_ratio, 0.93);  // edges and curvature fold cells, which lowers it a little
   }
 }
 
 TEST(Balance, GivesTheCountFromEveryStart) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_torus(), 80, 2);
   const SurfaceQuery surface(make_torus());
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   for (const SeedStart start : {SeedStart::random, SeedStart::blue_noise, SeedStart::coarse_to_fine})
     for (const bool lloyd : {false, true})
       for (const std::size_t count : {4u, 5u, 311u}) {
-        const BalanceResult result =
-            balance_seeds(evaluator, count, {.start = start, .lloyd = lloyd, .evaluations = 12}, run);
+        const RelaxResult result =
+            relax_seeds(evaluator, count, {.start = start, .lloyd = lloyd, .evaluations = 12}, context);
         ASSERT_EQ(result.seeds.size(), count);
         EXPECT_GT(result.energy_ratio, 0);
         if (count < 100) continue;
@@ -36,15 +36,15 @@ TEST(Balance, GivesTheCountFromEveryStart) {
 }
 
 TEST(Balance, ManyLevelsGiveTheCount) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   // 1,500 seeds are two levels; the box has edges, the torus a handle, the pair two bodies.
   const Mesh meshes[] = {make_box({1, 0.5, 0.5}), make_torus(),
                          merged(make_icosphere(3), translated(make_icosphere(3, 0.3), {1.5, 0, 0}))};
   for (const Mesh& mesh : meshes) {
     const SampleSet samples = sampled(mesh, 150, 2);
-    CellEvaluator evaluator(samples, run);
+    CellEvaluator evaluator(samples, context);
     for (const std::size_t count : {1203u, 1500u}) {
-      const BalanceResult result = balance_seeds(evaluator, count, {.evaluations = 8}, run);
+      const RelaxResult result = relax_seeds(evaluator, count, {.evaluations = 8}, context);
       EXPECT_EQ(result.seeds.size(), count);
       EXPECT_LT(result.energy_ratio, 1.05);
     }
@@ -53,44 +53,44 @@ TEST(Balance, ManyLevelsGiveTheCount) {
 
 TEST(Balance, SameBitsForAnyNumberOfThreads) {
   const SampleSet samples = sampled(make_torus(), 100, 2);
-  std::vector<BalanceResult> results;
+  std::vector<RelaxResult> results;
   for (unsigned threads = 1; threads <= 3; ++threads) {
-    evenmesh::Run run(threads);
-    CellEvaluator evaluator(samples, run);
-    results.push_back(with_threads(run, [&] { return balance_seeds(evaluator, 1300, {.evaluations = 6}, run); }));
+    evenmesh::ExecutionContext context(threads);
+    CellEvaluator evaluator(samples, context);
+    results.push_back(with_threads(context, [&] { return relax_seeds(evaluator, 1300, {.evaluations = 6}, context); }));
   }
-  for (const BalanceResult& result : results) {
+  for (const RelaxResult& result : results) {
     EXPECT_TRUE(same_bytes(result.seeds, results[0].seeds));
     EXPECT_TRUE(same_bytes(result.ratios, results[0].ratios));
   }
 }
 
 TEST(Balance, AnnealingDoesNotRaiseTheEnergyMuch) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_icosphere(4), 64, 2);
-  CellEvaluator evaluator(samples, run);
-  const BalanceOptions plain{.start = SeedStart::random, .evaluations = 30};
-  BalanceOptions annealed = plain;
+  CellEvaluator evaluator(samples, context);
+  const RelaxOptions plain{.start = SeedStart::random, .evaluations = 30};
+  RelaxOptions annealed = plain;
   annealed.annealing_rounds = 4;
-  const double before = balance_seeds(evaluator, 100, plain, run).energy_ratio;
-  EXPECT_LE(balance_seeds(evaluator, 100, annealed, run).energy_ratio, before * (1 + 1e-9));
+  const double before = relax_seeds(evaluator, 100, plain, context).energy_ratio;
+  EXPECT_LE(relax_seeds(evaluator, 100, annealed, context).energy_ratio, before * (1 + 1e-9));
 }
 
 TEST(Balance, RefusesWhatCannotBeMet) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(1), 10);
-  CellEvaluator evaluator(samples, run);
-  EXPECT_THROW(balance_seeds(evaluator, 3, {}, run), InvalidInput);
-  EXPECT_THROW(balance_seeds(evaluator, samples.size() + 1, {}, run), InvalidInput);
-  EXPECT_EQ(balance_seeds(evaluator, samples.size() / 4, {.evaluations = 2}, run).seeds.size(), samples.size() / 4);
+  CellEvaluator evaluator(samples, context);
+  EXPECT_THROW(relax_seeds(evaluator, 3, {}, context), InvalidInput);
+  EXPECT_THROW(relax_seeds(evaluator, samples.size() + 1, {}, context), InvalidInput);
+  EXPECT_EQ(relax_seeds(evaluator, samples.size() / 4, {.evaluations = 2}, context).seeds.size(), samples.size() / 4);
 }
 
 TEST(Balance, CancelStopsIt) {
   const SampleSet samples = sampled(make_icosphere(2), 32);
-  evenmesh::Run run(1);
-  CellEvaluator evaluator(samples, run);
-  run.cancel();
-  EXPECT_THROW(balance_seeds(evaluator, 50, {}, run), Cancelled);
+  evenmesh::ExecutionContext context(1);
+  CellEvaluator evaluator(samples, context);
+  context.cancel();
+  EXPECT_THROW(relax_seeds(evaluator, 50, {}, context), Cancelled);
 }
 
 }  // namespace

@@ -43,11 +43,11 @@ TEST(Starts, BlueNoiseKeepsItsDistance) {
 }
 
 TEST(Starts, SplittingQuadruplesRegularSeeds) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_icosphere(5), 160, 2);
-  CellEvaluator evaluator(samples, run);
-  const std::vector<Vec3> seeds = balanced_seeds(samples, 200);
-  const std::vector<Vec3> middles = neighbour_middles(evaluator, seeds, run);
+  CellEvaluator evaluator(samples, context);
+  const std::vector<Vec3> seeds = relaxed_seeds(samples, 200);
+  const std::vector<Vec3> middles = neighbour_middles(evaluator, seeds, context);
   EXPECT_NEAR(static_cast<double>(middles.size()), 3 * 200 - 6, 8);  // Euler: edges of a triangulated sphere
   std::vector<Vec3> split = seeds;
   split.insert(split.end(), middles.begin(), middles.end());
@@ -60,13 +60,13 @@ TEST(Starts, SplittingQuadruplesRegularSeeds) {
 }
 
 TEST(Starts, AdjustCountMeetsAnyCount) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_torus(), 60);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   const std::vector<Vec3> seeds = random_start(samples, 100, 3);
   for (const std::size_t count : {4u, 50u, 99u, 100u, 101u, 130u, 200u, 450u}) {
     std::vector<Vec3> adjusted = seeds;
-    adjust_count(evaluator, adjusted, count, 1, run);
+    adjust_count(evaluator, adjusted, count, 1, context);
     ASSERT_EQ(adjusted.size(), count);
     if (count >= 100) {
       EXPECT_TRUE(std::equal(seeds.begin(), seeds.end(), adjusted.begin()));
@@ -76,27 +76,27 @@ TEST(Starts, AdjustCountMeetsAnyCount) {
 }
 
 TEST(Starts, AdjustCountMeetsTheCountWithEmptyCells) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_torus(), 60);
-  CellEvaluator evaluator(samples, run);
+  CellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 50, 3);
   for (std::size_t i = 0; i < 50; ++i) seeds.push_back(seeds[i]);  // the twin of every seed owns nothing
   for (const std::size_t count : {60u, 101u, 150u, 180u, 260u}) {
     std::vector<Vec3> adjusted = seeds;
-    adjust_count(evaluator, adjusted, count, 1, run);
+    adjust_count(evaluator, adjusted, count, 1, context);
     EXPECT_EQ(adjusted.size(), count);
   }
 }
 
 TEST(Starts, AdjustCountHelpsTheHeaviestAndTakesTheLightest) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(4), 60);
-  CellEvaluator evaluator(samples, run);
-  std::vector<Vec3> seeds = balanced_seeds(samples, 100);
+  CellEvaluator evaluator(samples, context);
+  std::vector<Vec3> seeds = relaxed_seeds(samples, 100);
   const Vec3 crowded = seeds[10] + Vec3{0.01, 0.01, 0};
   seeds.push_back(crowded);
   std::vector<Vec3> fewer = seeds;
-  adjust_count(evaluator, fewer, 100, 1, run);
+  adjust_count(evaluator, fewer, 100, 1, context);
   ASSERT_EQ(fewer.size(), 100u);
   CellSums before, after;
   evaluator.evaluate(seeds, before);

@@ -29,8 +29,8 @@ TEST(HolesFilled, ABallWithHolesIsWholeAgain) {
   double volume = 0;
   for (std::size_t h = 0; h < 3 * whole.triangles.size(); ++h) ASSERT_NE(edges.opposite(h), HalfEdges::none);
   for (std::uint32_t v = 0; v < whole.vertices.size(); ++v) {
-    EXPECT_LE(edges.fans(v), 1u);
-    used += edges.fans(v);
+    EXPECT_LE(edges.umbrellas(v), 1u);
+    used += edges.umbrellas(v);
   }
   EXPECT_EQ(2 * used, whole.triangles.size() + 4) << "the topology of a ball";
   for (const Triangle& t : whole.triangles)

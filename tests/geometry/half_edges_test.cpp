@@ -41,7 +41,7 @@ TEST(HalfEdges, VerticesKnowTheirCorners) {
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     corners += edges.corners(v), of_five += edges.corners(v) == 5;
     EXPECT_EQ(start(mesh.triangles, edges.outgoing(v)), v);
-    EXPECT_EQ(edges.fans(v), 1u);
+    EXPECT_EQ(edges.umbrellas(v), 1u);
   }
   EXPECT_EQ(corners, 3 * mesh.triangles.size());
   EXPECT_EQ(of_five, 12u);
@@ -52,7 +52,7 @@ TEST(HalfEdges, UnusedVerticesHaveNothing) {
   const HalfEdges edges(triangles, 5);
   EXPECT_EQ(edges.outgoing(2), HalfEdges::none);
   EXPECT_EQ(edges.corners(4), 0u);
-  EXPECT_EQ(edges.fans(4), 0u);
+  EXPECT_EQ(edges.umbrellas(4), 0u);
   const HalfEdges nothing({}, 0);
 }
 
@@ -65,8 +65,8 @@ TEST(HalfEdges, BoundariesHaveNoOpposite) {
 }
 
 TEST(HalfEdges, EdgesOfThreeTrianglesOrAgainstEachOtherHaveNoOpposite) {
-  const std::vector<Triangle> fan{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, against{{0, 1, 2}, {0, 1, 3}};
-  for (const auto& triangles : {fan, against}) {
+  const std::vector<Triangle> umbrella{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, against{{0, 1, 2}, {0, 1, 3}};
+  for (const auto& triangles : {umbrella, against}) {
     const HalfEdges edges(triangles, 5);
     for (std::uint32_t h = 0; h < 3 * triangles.size(); h += 3) EXPECT_EQ(edges.opposite(h), HalfEdges::none);
   }
@@ -78,27 +78,27 @@ TEST(HalfEdges, BodiesThatShareAVertexAreTwoFans) {
     for (std::uint32_t& v : t)
       if (v == 4) v = 0;
   const HalfEdges edges(mesh.triangles, mesh.vertices.size());
-  EXPECT_EQ(edges.fans(0), 2u);
-  EXPECT_EQ(edges.fans(1), 1u);
+  EXPECT_EQ(edges.umbrellas(0), 2u);
+  EXPECT_EQ(edges.umbrellas(1), 1u);
   EXPECT_EQ(edges.corners(0), 6u);
 }
 
-/// The triangles around a vertex as visit_fans() lists them: third corners, fan by fan.
+/// The triangles around a vertex as visit_umbrellas() lists them: third corners, fan by fan.
 std::vector<std::vector<std::uint32_t>> fans_at(const std::vector<Triangle>& triangles, std::size_t vertices,
                                                 std::uint32_t v) {
   const HalfEdges edges(triangles, vertices);
   std::vector<std::vector<std::uint32_t>> list;
-  edges.visit_fans(v, [&](std::uint32_t h, std::uint32_t fan) {
+  edges.visit_umbrellas(v, [&](std::uint32_t h, std::uint32_t umbrella) {
     EXPECT_EQ(start(triangles, h), v);
-    EXPECT_LE(fan, list.size());
-    list.resize(std::max<std::size_t>(list.size(), fan + 1));
-    if (!list[fan].empty()) {  // one triangle after the other, each across an edge of the last
-      const std::uint32_t last = list[fan].back();
+    EXPECT_LE(umbrella, list.size());
+    list.resize(std::max<std::size_t>(list.size(), umbrella + 1));
+    if (!list[umbrella].empty()) {  // one triangle after the other, each across an edge of the last
+      const std::uint32_t last = list[umbrella].back();
       EXPECT_EQ(edges.opposite(HalfEdges::previous(last)), h);
     }
-    list[fan].push_back(h);
+    list[umbrella].push_back(h);
   });
-  EXPECT_EQ(edges.fans(v), list.size());
+  EXPECT_EQ(edges.umbrellas(v), list.size());
   return list;
 }
 
@@ -106,10 +106,10 @@ TEST(HalfEdges, AClosedFanIsVisitedOnceAround) {
   const Mesh mesh = make_icosphere(1);
   const HalfEdges edges(mesh.triangles, mesh.vertices.size());
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
-    const auto fans = fans_at(mesh.triangles, mesh.vertices.size(), v);
-    ASSERT_EQ(fans.size(), 1u);
-    EXPECT_EQ(fans[0].size(), edges.corners(v));
-    EXPECT_EQ(edges.opposite(HalfEdges::previous(fans[0].back())), fans[0].front());
+    const auto umbrellas = fans_at(mesh.triangles, mesh.vertices.size(), v);
+    ASSERT_EQ(umbrellas.size(), 1u);
+    EXPECT_EQ(umbrellas[0].size(), edges.corners(v));
+    EXPECT_EQ(edges.opposite(HalfEdges::previous(umbrellas[0].back())), umbrellas[0].front());
   }
 }
 
@@ -118,11 +118,11 @@ TEST(HalfEdges, AnOpenFanIsOneWhereverItIsStored) {
   std::sort(triangles.begin(), triangles.end());
   do {
     const HalfEdges edges(triangles, 6);
-    const auto fans = fans_at(triangles, 6, 0);
-    ASSERT_EQ(fans.size(), 1u);
-    ASSERT_EQ(fans[0].size(), 4u);
-    EXPECT_EQ(edges.opposite(fans[0].front()), HalfEdges::none) << "it begins on the boundary";
-    EXPECT_EQ(edges.opposite(HalfEdges::previous(fans[0].back())), HalfEdges::none) << "and ends there";
+    const auto umbrellas = fans_at(triangles, 6, 0);
+    ASSERT_EQ(umbrellas.size(), 1u);
+    ASSERT_EQ(umbrellas[0].size(), 4u);
+    EXPECT_EQ(edges.opposite(umbrellas[0].front()), HalfEdges::none) << "it begins on the boundary";
+    EXPECT_EQ(edges.opposite(HalfEdges::previous(umbrellas[0].back())), HalfEdges::none) << "and ends there";
   } while (std::next_permutation(triangles.begin(), triangles.end()));
 }
 
@@ -130,19 +130,19 @@ TEST(HalfEdges, EveryVertexOfADiscIsOneFan) {
   const Mesh plane = make_grid_plane(3, 3);
   std::size_t corners = 0;
   for (std::uint32_t v = 0; v < plane.vertices.size(); ++v) {
-    const auto fans = fans_at(plane.triangles, plane.vertices.size(), v);
-    ASSERT_EQ(fans.size(), 1u);
-    corners += fans[0].size();
+    const auto umbrellas = fans_at(plane.triangles, plane.vertices.size(), v);
+    ASSERT_EQ(umbrellas.size(), 1u);
+    corners += umbrellas[0].size();
   }
   EXPECT_EQ(corners, 3 * plane.triangles.size());
 }
 
 TEST(HalfEdges, ABowtieIsTwoFans) {
   const std::vector<Triangle> bowtie{{0, 1, 2}, {4, 0, 3}, {2, 3, 0}, {5, 6, 0}};
-  const auto fans = fans_at(bowtie, 7, 0);
-  ASSERT_EQ(fans.size(), 2u);
-  EXPECT_EQ(fans[0].size() + fans[1].size(), 4u);
-  EXPECT_EQ(std::min(fans[0].size(), fans[1].size()), 1u);
+  const auto umbrellas = fans_at(bowtie, 7, 0);
+  ASSERT_EQ(umbrellas.size(), 2u);
+  EXPECT_EQ(umbrellas[0].size() + umbrellas[1].size(), 4u);
+  EXPECT_EQ(std::min(umbrellas[0].size(), umbrellas[1].size()), 1u);
   EXPECT_EQ(fans_at(bowtie, 7, 2).size(), 1u);
 }
 
@@ -150,10 +150,10 @@ TEST(HalfEdges, AClosedAndAnOpenFanMayMeet) {
   Mesh mesh = make_tetrahedron();
   const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.triangles.push_back({0, n, n + 1});
-  const auto fans = fans_at(mesh.triangles, n + 2, 0);
-  ASSERT_EQ(fans.size(), 2u);
-  EXPECT_EQ(fans[0].size(), 3u);
-  EXPECT_EQ(fans[1].size(), 1u);
+  const auto umbrellas = fans_at(mesh.triangles, n + 2, 0);
+  ASSERT_EQ(umbrellas.size(), 2u);
+  EXPECT_EQ(umbrellas[0].size(), 3u);
+  EXPECT_EQ(umbrellas[1].size(), 1u);
 }
 
 TEST(HalfEdges, TrianglesAtAnEdgeOfThreeAreFansOfTheirOwn) {

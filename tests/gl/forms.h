@@ -14,11 +14,11 @@
 namespace evenmesh::testing {
 
 /// The text of an expression in GLSL, with functions of its own: nothing depends on those of a driver.
-inline std::string glsl_of(const Program& program) {
+inline std::string glsl_of(const ExpressionGraph& graph) {
   std::string text;
   for (const gl::ShaderFile& file : gl::shader_files())
     if (file.name == "tape_math.glsl") text = file.text;
-  return text + gl::glsl_of_tape(compile_tape(program));
+  return text + gl::glsl_of_tape(compile_tape(graph));
 }
 
 /// Compilers of shaders take some 30 ms for a formula. No multiple of 5, since random_formulas() has depths that
@@ -43,8 +43,7 @@ inline const Form as_shader{.name = "glsl",
                                 [](const Shape& shape, double slope) {
                                   GlslOptions options{.bounds = shape.bounds};
                                   if (slope > 0) options.lipschitz = slope;
-                                  Shape made =
-                                      shape_from_glsl(glsl_of(*program_of(*shape.field())), options, shape.name);
+                                  Shape made = shape_from_glsl(glsl_of(*graph_of(*shape.field())), options, shape.name);
                                   made.bounds = shape.bounds, made.capped_by_bounds = shape.capped_by_bounds;
                                   return made;
                                 },

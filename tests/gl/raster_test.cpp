@@ -72,7 +72,7 @@ Vec3 normal_of(const Mesh& mesh, std::uint32_t triangle) {
 TriDexel scanned(const Shape& shape, const Grid& grid, std::vector<PackedNormal>& normals) {
   const auto* sampler = dynamic_cast<const gl::RasterSampler*>(shape.sampler());
   EXPECT_NE(sampler, nullptr);
-  return sampler->scan(grid, shape.bounds, normals, Run::silent());
+  return sampler->scan(grid, shape.bounds, normals, ExecutionContext::silent());
 }
 
 struct Agreement {
@@ -106,7 +106,7 @@ Agreement compare(const Mesh& mesh, std::size_t resolution) {
           (steep ? result.worst_steep : result.worst) = std::max(steep ? result.worst_steep : result.worst, share);
           ++result.crossings;
           result.apart += !steep && share > 1e-5;
-          if (steep || one[i].made || share > 1e-5) continue;
+          if (steep || one[i].synthetic || share > 1e-5) continue;
           Vec3 m = unpack_normal(normals[one[i].source]);
           if (dot(m, n) < 0) m = -m;
           result.worst_normal = std::max(result.worst_normal, norm(cross(m, n)));
@@ -150,7 +150,7 @@ TEST(Raster, AgreesWithTheScanOfAModel) {
 
 /// Samples, at a resolution.
 SampleSet sampled(const Shape& shape, std::size_t resolution) {
-  return sample_shape(shape, make_grid(shape.bounds, resolution), Run::silent());
+  return sample_shape(shape, make_grid(shape.bounds, resolution), ExecutionContext::silent());
 }
 
 /// Largest |f| at the samples, of the solid f < 0; and of the angle between normals and the gradient.
@@ -229,7 +229,7 @@ TEST(Raster, StandsWhereverASolidDoes) {
   const Shape mesh = shape_from_mesh(ball);
   const auto area = [](const Shape& shape) {
     const Shape whole = shape;
-    return sample_shape(whole, make_grid(whole.bounds, 80), Run::silent()).total_area;
+    return sample_shape(whole, make_grid(whole.bounds, 80), ExecutionContext::silent()).total_area;
   };
   EXPECT_NEAR(area(subtract(drawn, {box})), area(subtract(mesh, {box})), 1e-2);
   EXPECT_NEAR(area(intersect({box, drawn})), area(intersect({box, mesh})), 1e-2);
@@ -294,10 +294,10 @@ TEST(Raster, SheetsAreSurfacesAndNoSolids) {
   const Shape sheet = shape_from_raster(
       {.vertex = sheet_vertex, .vertex_count = 2400, .bounds = {{-1.5, -1.5, -0.5}, {1.5, 1.5, 0.5}}});
   const Shape ball = shape_from_raster({.geometry = make_icosphere(4)});
-  evenmesh::Run& run = evenmesh::Run::silent();
-  EXPECT_LT(sheet.sampler()->solidity(sheet.bounds, run), 0.1);
-  EXPECT_GT(ball.sampler()->solidity(ball.bounds, run), 0.99);
-  const SampleSet samples = sheet.sampler()->sample_surface(make_grid(sheet.bounds, 100), sheet.bounds, run);
+  evenmesh::ExecutionContext& context = evenmesh::ExecutionContext::silent();
+  EXPECT_LT(sheet.sampler()->solidity(sheet.bounds, context), 0.1);
+  EXPECT_GT(ball.sampler()->solidity(ball.bounds, context), 0.99);
+  const SampleSet samples = sheet.sampler()->sample_surface(make_grid(sheet.bounds, 100), sheet.bounds, context);
   const Fit worst = fit(
       samples, [](const Vec3& p) { return p.z - 0.2 * std::sin(3 * p.x); },
       [](const Vec3& p) {
@@ -309,7 +309,7 @@ TEST(Raster, SheetsAreSurfacesAndNoSolids) {
   EXPECT_NEAR(samples.total_area, 2 * length, 0.05);
   // Beyond the bounds nothing is put onto them.
   const Box part{{-1.5, -1.5, -0.5}, {0, 1.5, 0.5}};
-  EXPECT_NEAR(sheet.sampler()->sample_surface(make_grid(sheet.bounds, 100), part, run).total_area, length, 0.05);
+  EXPECT_NEAR(sheet.sampler()->sample_surface(make_grid(sheet.bounds, 100), part, context).total_area, length, 0.05);
 }
 
 TEST(Raster, TakesDefinitions) {
@@ -372,7 +372,7 @@ TEST(Raster, SaysWhatIsWrongAndWhere) {
 
 TEST(Raster, GivesTheSameBytesForAnyNumberOfThreads) {
   const Shape shape = shape_from_raster({.geometry = turned_cube()});
-  evenmesh::Run one(1), two(2);
+  evenmesh::ExecutionContext one(1), two(2);
   const Grid grid = make_grid(shape.bounds, 100);
   const SampleSet a = sample_shape(shape, grid, one), b = sample_shape(shape, grid, two);
   EXPECT_EQ(a.x, b.x);

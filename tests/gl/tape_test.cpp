@@ -78,7 +78,7 @@ std::vector<Shape> expression_shapes() {
   for (const char* text : expressions) shapes.push_back(shape_from_expression(text, {}, {{-2, -2, -2}, {2, 2, 2}}));
   for (const GalleryEntry& entry : gallery()) {
     Shape shape = gallery_shape(entry.name);
-    if (program_of(*shape.field())) shapes.push_back(std::move(shape));
+    if (graph_of(*shape.field())) shapes.push_back(std::move(shape));
   }
   return shapes;
 }
@@ -126,7 +126,7 @@ TEST(TapeOnGl, ValuesAndGradientsAreThoseOfTheCpu) {
 TEST(TapeOnGl, EnclosuresAndSinglePointsAreTheCpus) {
   Random random(5);
   for (const Shape& shape : expression_shapes()) {
-    const auto moved = gl::make_tape_field(gl::shared_context(""), *program_of(*shape.field()));
+    const auto moved = gl::make_tape_field(gl::shared_context(""), *graph_of(*shape.field()));
     EXPECT_TRUE(moved->encloses_surely() && moved->differentiates() && moved->has_gradient());
     for (int round = 0; round < 4; ++round) {
       const Box box = testing::random_box(shape.bounds, random);
@@ -145,9 +145,9 @@ TEST(TapeOnGl, EnclosuresAndSinglePointsAreTheCpus) {
 void expect_same_surface(const Shape& shape, const Shape& moved, std::size_t resolution) {
   SCOPED_TRACE(shape.name);
   ASSERT_TRUE(runs_on_gl(moved));
-  Run run(2);
+  ExecutionContext context(2);
   const Grid grid = make_grid(shape.bounds, resolution);
-  const SampleSet on_cpu = sample_shape(shape, grid, run), on_device = sample_shape(moved, grid, run);
+  const SampleSet on_cpu = sample_shape(shape, grid, context), on_device = sample_shape(moved, grid, context);
   expect_well_formed(on_device);
   expect_one_sign_grid(on_device);
   expect_near(on_cpu, on_device);

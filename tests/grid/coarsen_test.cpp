@@ -1,7 +1,10 @@
+#include "grid/coarsen.h"
+
 #include <gtest/gtest.h>
 
 #include "geometry/primitives.h"
-#include "sample_checks.h"
+#include "grid/sample_checks.h"
+#include "sample/sample.h"
 
 namespace evenmesh {
 namespace {
@@ -45,7 +48,7 @@ TEST(Coarsen, SamplesStayWhereTheyWere) {
 
 TEST(Coarsen, ThreadsDoNotMatter) {
   const SampleSet fine = sampled(make_icosphere(3), 90);
-  evenmesh::Run one(1), two(2);
+  evenmesh::ExecutionContext one(1), two(2);
   expect_same(coarsen(fine, one), coarsen(fine, two));
 }
 

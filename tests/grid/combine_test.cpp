@@ -20,8 +20,8 @@ namespace {
 const Box space{{-1.6, -1.6, -1.6}, {1.6, 1.6, 1.6}};
 
 SampleSet on_grid(const Shape& shape, std::size_t resolution = 60, unsigned threads = 2) {
-  evenmesh::Run run(threads);
-  return sample_shape(shape, make_grid(space, resolution), run);
+  evenmesh::ExecutionContext context(threads);
+  return sample_shape(shape, make_grid(space, resolution), context);
 }
 Shape ball(const Vec3& at, double radius) {
   return transformed(gallery_shape("sphere"), Affine::translate(at).after(Affine::scale({radius, radius, radius})));
@@ -48,11 +48,11 @@ struct Operands {
 
 TEST(Combine, InsideIsTheBooleanOfInsides) {
   const Operands o;
-  evenmesh::Run run(2);
-  const InsideRuns a(o.a, run), b(o.b, run);
+  evenmesh::ExecutionContext context(2);
+  const InsideRuns a(o.a, context), b(o.b, context);
   for (const Boolean operation : {Boolean::unite, Boolean::intersect, Boolean::subtract}) {
-    const SampleSet set = combine(o.a, o.b, operation, run);
-    const InsideRuns result(set, run);
+    const SampleSet set = combine(o.a, o.b, operation, context);
+    const InsideRuns result(set, context);
     const auto size = set.grid.size;
     std::size_t crossings = 0;
     const auto expected = [&](std::int32_t i, std::int32_t j, std::int32_t k) {
@@ -75,21 +75,21 @@ TEST(Combine, InsideIsTheBooleanOfInsides) {
 
 TEST(Combine, IdempotenceAndDeMorganBitForBit) {
   const Operands o;
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   for (const SampleSet* s : {&o.a, &o.b, &o.c}) {
-    EXPECT_TRUE(same(combine(*s, *s, Boolean::unite, run), *s));
-    EXPECT_TRUE(same(combine(*s, *s, Boolean::intersect, run), *s));
-    EXPECT_EQ(combine(*s, *s, Boolean::subtract, run).size(), 0u);
+    EXPECT_TRUE(same(combine(*s, *s, Boolean::unite, context), *s));
+    EXPECT_TRUE(same(combine(*s, *s, Boolean::intersect, context), *s));
+    EXPECT_EQ(combine(*s, *s, Boolean::subtract, context).size(), 0u);
   }
   const SampleSet all = on_grid(everything());
-  const auto without = [&](const SampleSet& s) { return combine(all, s, Boolean::subtract, run); };
-  EXPECT_TRUE(same(without(combine(o.a, o.b, Boolean::unite, run)),
-                   combine(without(o.a), without(o.b), Boolean::intersect, run)));
-  EXPECT_TRUE(same(without(combine(o.a, o.b, Boolean::intersect, run)),
-                   combine(without(o.a), without(o.b), Boolean::unite, run)));
-  EXPECT_TRUE(same(combine(combine(o.a, o.b, Boolean::subtract, run), o.c, Boolean::subtract, run),
-                   combine(o.a, combine(o.b, o.c, Boolean::unite, run), Boolean::subtract, run)));
-  EXPECT_TRUE(same(combine(o.a, o.b, Boolean::unite, run), combine(o.b, o.a, Boolean::unite, run)));
+  const auto without = [&](const SampleSet& s) { return combine(all, s, Boolean::subtract, context); };
+  EXPECT_TRUE(same(without(combine(o.a, o.b, Boolean::unite, context)),
+                   combine(without(o.a), without(o.b), Boolean::intersect, context)));
+  EXPECT_TRUE(same(without(combine(o.a, o.b, Boolean::intersect, context)),
+                   combine(without(o.a), without(o.b), Boolean::unite, context)));
+  EXPECT_TRUE(same(combine(combine(o.a, o.b, Boolean::subtract, context), o.c, Boolean::subtract, context),
+                   combine(o.a, combine(o.b, o.c, Boolean::unite, context), Boolean::subtract, context)));
+  EXPECT_TRUE(same(combine(o.a, o.b, Boolean::unite, context), combine(o.b, o.a, Boolean::unite, context)));
 }
 
 TEST(Combine, SameForAnyNumberOfThreads) {
@@ -112,23 +112,23 @@ bool closed(const Mesh& mesh) {
 }
 
 TEST(DualSurface, IsClosedAndKeepsEdges) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const Box box{{-0.71, -0.52, -0.33}, {0.8, 0.6, 0.4}};
-  const Mesh mesh = dual_surface(on_grid(shape_from_box(box)), run);
+  const Mesh mesh = dual_surface(on_grid(shape_from_box(box)), context);
   EXPECT_TRUE(closed(mesh));
   const Vec3 size = box.size();
   EXPECT_NEAR(volume_of(mesh), size.x * size.y * size.z, 2e-3);
   const Box found = mesh.bounds();
   EXPECT_LT(norm(found.lo - box.lo) + norm(found.hi - box.hi), 4e-3);
-  const Mesh torus = dual_surface(on_grid(gallery_shape("torus")), run);
+  const Mesh torus = dual_surface(on_grid(gallery_shape("torus")), context);
   EXPECT_TRUE(closed(torus));
   EXPECT_NEAR(volume_of(torus), 2 * std::numbers::pi * std::numbers::pi * 0.35 * 0.35, 5e-3);
 }
 
 TEST(Combine, VolumesAddUp) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const Shape a = ball({-0.2, 0.1, 0}, 0.9), b = gallery_shape("torus");
-  const auto volume = [&](const Shape& shape) { return volume_of(dual_surface(on_grid(shape, 512), run)); };
+  const auto volume = [&](const Shape& shape) { return volume_of(dual_surface(on_grid(shape, 512), context)); };
   const double sum = volume(a) + volume(b);
   EXPECT_NEAR(volume(unite({a, b})) + volume(intersect({a, b})), sum, 0.002 * sum);
 }
@@ -170,8 +170,8 @@ TEST(Offset, LiesWithinACellOfTheExactOne) {
 TEST(Offset, ClosesAndOpens) {
   // Two balls a gap apart become one, and a thin handle goes.
   const Shape two = unite({ball({-0.55, 0, 0}, 0.5), ball({0.55, 0, 0}, 0.5)});
-  evenmesh::Run run(2);
-  const auto volume = [&](const Shape& shape) { return volume_of(dual_surface(on_grid(shape, 100), run)); };
+  evenmesh::ExecutionContext context(2);
+  const auto volume = [&](const Shape& shape) { return volume_of(dual_surface(on_grid(shape, 100), context)); };
   EXPECT_GT(volume(closing(two, 0.2)), volume(two) + 0.001);
   const Shape ball_with_rod = unite({ball({0, 0, 0}, 0.6), shape_from_box({{0, -0.05, -0.05}, {1.3, 0.05, 0.05}})});
   EXPECT_NEAR(volume(opening(ball_with_rod, 0.15)), volume(ball({0, 0, 0}, 0.6)), 0.01);
@@ -181,10 +181,11 @@ TEST(Solid, TransformsFollowTheTree) {
   const Affine move =
       Affine::translate({0.2, 0.1, -0.1}).after(Affine::rotate({1, 2, 3}, 50).after(Affine::scale({0.5, 0.5, 0.5})));
   const Shape tree = subtract(offset(gallery_shape("cube"), 0.1), {ball({0.5, 0.5, 0.5}, 0.8)});
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const Box whole{{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}};
-  const double before = volume_of(dual_surface(sample_shape(tree, make_grid(whole, 120), run), run));
-  const double after = volume_of(dual_surface(sample_shape(transformed(tree, move), make_grid(whole, 240), run), run));
+  const double before = volume_of(dual_surface(sample_shape(tree, make_grid(whole, 120), context), context));
+  const double after =
+      volume_of(dual_surface(sample_shape(transformed(tree, move), make_grid(whole, 240), context), context));
   EXPECT_NEAR(after, before / 8, 0.01 * before / 8);
   EXPECT_THROW(transformed(tree, Affine::scale({1, 2, 1})), InvalidInput);
   EXPECT_THROW(transformed(tree, Affine::scale({1, 0, 1})), InvalidInput);

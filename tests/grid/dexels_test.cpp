@@ -12,17 +12,17 @@ namespace evenmesh {
 namespace {
 
 SampleSet sampled_torus() {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const Shape shape = gallery_shape("torus");
-  return sample_shape(shape, make_grid(shape.bounds, 50), run);
+  return sample_shape(shape, make_grid(shape.bounds, 50), context);
 }
 
 TEST(Dexels, SamplesComeBack) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet set = sampled_torus();
   Dexels dexels = dexels_of(set);
   std::reverse(dexels.crossings.begin(), dexels.crossings.end());  // any order will do
-  const SampleSet again = samples_of(dexels, run);
+  const SampleSet again = samples_of(dexels, context);
   ASSERT_EQ(again.size(), set.size());
   for (std::size_t i = 0; i < set.size(); ++i) {
     ASSERT_EQ(again.edge[i].bits, set.edge[i].bits);

@@ -25,14 +25,14 @@ inline Shape solid_of(const Mesh& mesh) {
 }
 
 inline SampleSet sampled(const Mesh& mesh, std::size_t resolution, unsigned threads = 1) {
-  Run run(threads);
+  ExecutionContext context(threads);
   const Shape shape = solid_of(mesh);
-  return sample_shape(shape, make_grid(shape.bounds, resolution), run);
+  return sample_shape(shape, make_grid(shape.bounds, resolution), context);
 }
 
 inline SampleSet sampled(const Shape& shape, std::size_t resolution, unsigned threads = 2) {
-  Run run(threads);
-  return sample_shape(shape, make_grid(shape.bounds, resolution), run);
+  ExecutionContext context(threads);
+  return sample_shape(shape, make_grid(shape.bounds, resolution), context);
 }
 
 struct EdgeOf {

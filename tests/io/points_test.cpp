@@ -132,7 +132,7 @@ std::string long_text(std::size_t points, std::size_t wrong_line = 0) {
 TEST(Points, LongTextInPiecesIsTheSameForAnyThreads) {
   const TemporaryFolder folder;
   write_file(folder / "long.pwn", long_text(150'000));
-  evenmesh::Run one(1), two(2);
+  evenmesh::ExecutionContext one(1), two(2);
   const PointCloud a = read_points(folder / "long.pwn", one), b = read_points(folder / "long.pwn", two);
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.normals, b.normals);
@@ -168,9 +168,9 @@ TEST(Points, FilesAndStreams) {
   ::close(kept);
   ::close(file);
 
-  evenmesh::Run run;
-  run.cancel();
-  EXPECT_THROW(read_points(corpus_folder() / "points/count.pts", run), Cancelled);
+  evenmesh::ExecutionContext context;
+  context.cancel();
+  EXPECT_THROW(read_points(corpus_folder() / "points/count.pts", context), Cancelled);
 }
 
 TEST(Points, OneCallReadsWhateverAFileHolds) {

@@ -116,7 +116,7 @@ std::string long_obj(std::size_t triangles, std::size_t wrong_line = 0) {
 TEST(Read, LongObjInPiecesIsTheSameForAnyThreads) {
   const TemporaryFolder folder;
   write_file(folder / "long.obj", long_obj(60'000));
-  evenmesh::Run one(1), two(2);
+  evenmesh::ExecutionContext one(1), two(2);
   const Mesh a = read_mesh(folder / "long.obj", one), b = read_mesh(folder / "long.obj", two);
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.triangles, b.triangles);
@@ -155,9 +155,9 @@ TEST(Read, StandardInput) {
 }
 
 TEST(Read, CancelledRunThrows) {
-  evenmesh::Run run;
-  run.cancel();
-  EXPECT_THROW(read_mesh(corpus_folder() / "ply/le.ply", run), Cancelled);
+  evenmesh::ExecutionContext context;
+  context.cancel();
+  EXPECT_THROW(read_mesh(corpus_folder() / "ply/le.ply", context), Cancelled);
 }
 
 TEST(Recognize, ByContent) {

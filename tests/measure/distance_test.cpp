@@ -55,7 +55,7 @@ TEST(Distance, IgnoresUnusedVerticesAndDegenerateTriangles) {
 
 TEST(Distance, IsTheSameForAnyNumberOfThreads) {
   const Mesh a = make_icosphere(3), b = make_box({0.9, 0.8, 0.7}, 3);
-  evenmesh::Run one(1), three(3);
+  evenmesh::ExecutionContext one(1), three(3);
   const MeshDistance x = compare_meshes(a, b, few, one), y = compare_meshes(a, b, few, three);
   EXPECT_EQ(x.a_to_b_rms, y.a_to_b_rms);
   EXPECT_EQ(x.b_to_a_mean, y.b_to_a_mean);

@@ -157,7 +157,7 @@ TEST(Quality, IsTheSameForAnyNumberOfThreads) {
   Mesh mesh = make_icosphere(5);
   Random random(3);
   for (Vec3& v : mesh.vertices) v *= 1 + 0.05 * random.uniform();
-  evenmesh::Run one(1), three(3);
+  evenmesh::ExecutionContext one(1), three(3);
   EXPECT_EQ(quality_json(measure_quality(mesh, one)), quality_json(measure_quality(mesh, three)));
 }
 

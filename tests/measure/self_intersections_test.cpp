@@ -166,7 +166,7 @@ TEST(SelfIntersections, CleanMeshesHaveNone) {
 
 TEST(SelfIntersections, AreTheSameForAnyNumberOfThreads) {
   const Mesh mesh = merged(make_icosphere(4), translated(make_icosphere(4), {0.7, 0.1, 0.2}));
-  evenmesh::Run one(1), three(3);
+  evenmesh::ExecutionContext one(1), three(3);
   const Pairs pairs = self_intersections(mesh, one);
   EXPECT_FALSE(pairs.empty());
   EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
@@ -175,9 +175,9 @@ TEST(SelfIntersections, AreTheSameForAnyNumberOfThreads) {
 }
 
 TEST(SelfIntersections, HonourCancel) {
-  evenmesh::Run run;
-  run.cancel();
-  EXPECT_THROW(self_intersections(make_icosphere(3), run), Cancelled);
+  evenmesh::ExecutionContext context;
+  context.cancel();
+  EXPECT_THROW(self_intersections(make_icosphere(3), context), Cancelled);
 }
 
 }  // namespace

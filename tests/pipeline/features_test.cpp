@@ -87,9 +87,9 @@ TEST(Features, TipsOfConesHaveAVertex) {
     const MeshResult result = meshed(cones, {.vertices = vertices});
     expect_good_mesh(result);
     expect_count(result, vertices);
-    for (const Vec3& tip : {Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
+    for (const Vec3& apex : {Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
       double nearest = 1;
-      for (const Vec3& v : result.mesh.vertices) nearest = std::min(nearest, norm(v - tip));
+      for (const Vec3& v : result.mesh.vertices) nearest = std::min(nearest, norm(v - apex));
       EXPECT_LT(nearest, 0.01 * result.report.quality.edge_length_avg) << vertices;
     }
   }
@@ -97,7 +97,7 @@ TEST(Features, TipsOfConesHaveAVertex) {
 
 TEST(Features, SmoothShapesDoNotChange) {
   for (const char* name : {"torus", "rounded-box", "tangle"}) {
-    const MeshOptions off{.vertices = 700, .crease_angle = std::nullopt}, on{.vertices = 700};
+    const MeshOptions off{.vertices = 700, .feature_angle = std::nullopt}, on{.vertices = 700};
     EXPECT_TRUE(same_mesh(meshed(gallery_shape(name), off).mesh, meshed(gallery_shape(name), on).mesh)) << name;
   }
 }
@@ -107,9 +107,9 @@ TEST(Features, TheAngleDecides) {
   const Shape prism = shape_from_expression("max(abs(x), abs(x) / 2 + abs(y) * sqrt(3) / 2, abs(z)) - 1", {},
                                             Box{{-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}});
   const double top = 2 * 6 * 2 / std::sqrt(3.0), sides = 6 * 2;
-  EXPECT_NEAR(meshed(prism, {.vertices = 800, .crease_angle = 40}).report.crease_length, top + sides, 0.05);
-  EXPECT_NEAR(meshed(prism, {.vertices = 800, .crease_angle = 75}).report.crease_length, top, 0.1);
-  EXPECT_EQ(meshed(prism, {.vertices = 800, .crease_angle = 100}).report.crease_length, 0);
+  EXPECT_NEAR(meshed(prism, {.vertices = 800, .feature_angle = 40}).report.crease_length, top + sides, 0.05);
+  EXPECT_NEAR(meshed(prism, {.vertices = 800, .feature_angle = 75}).report.crease_length, top, 0.1);
+  EXPECT_EQ(meshed(prism, {.vertices = 800, .feature_angle = 100}).report.crease_length, 0);
 }
 
 TEST(Features, SameBytesForAnyNumberOfThreads) {
@@ -122,7 +122,7 @@ TEST(Features, SameBytesForAnyNumberOfThreads) {
 
 TEST(Features, WrongAnglesAreRefused) {
   for (const double angle : {0.0, -5.0, 180.0, std::nan("")})
-    EXPECT_THROW(meshed(gallery_shape("cube"), {.vertices = 100, .crease_angle = angle}), InvalidInput);
+    EXPECT_THROW(meshed(gallery_shape("cube"), {.vertices = 100, .feature_angle = angle}), InvalidInput);
 }
 
 }  // namespace

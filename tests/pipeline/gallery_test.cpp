@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Gallery, DifficultShape,
                            return name;
                          });
 
-TEST(Mending, TopologyThatNeedsMoreVerticesGetsThem) {
+TEST(TopologyRepair, TopologyThatNeedsMoreVerticesGetsThem) {
   const MeshResult result = meshed(gallery_shape("menger-2"), {.vertices = 300, .quality = Quality::fast});
   expect_good_mesh(result);
   EXPECT_EQ(result.report.quality.euler, -160);
@@ -56,7 +56,7 @@ TEST(Mending, TopologyThatNeedsMoreVerticesGetsThem) {
   EXPECT_TRUE(has_notice(result.report, "the topology needs more"));
 }
 
-TEST(Mending, SurfacesThatTouchAreRegularized) {
+TEST(TopologyRepair, SurfacesThatTouchAreRegularized) {
   // The Klein bottle's solid touches itself along a curve: what the grid sees there is chance.
   const MeshResult result = meshed(gallery_shape("klein"), {.vertices = 1000});
   expect_good_mesh(result);

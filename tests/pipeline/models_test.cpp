@@ -22,9 +22,9 @@ struct Model {
   friend void PrintTo(const Model& m, std::ostream* out) { *out << m.name; }
 };
 
-class ShellOfModel : public testing::TestWithParam<Model> {};
+class BandOfModel : public testing::TestWithParam<Model> {};
 
-TEST_P(ShellOfModel, IsATwoManifold) {
+TEST_P(BandOfModel, IsATwoManifold) {
   const Model model = GetParam();
   const std::filesystem::path path = data_file(model.name);
   if (!std::filesystem::exists(path))
@@ -48,7 +48,7 @@ TEST_P(ShellOfModel, IsATwoManifold) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, ShellOfModel,
+INSTANTIATE_TEST_SUITE_P(Models, BandOfModel,
                          testing::Values(Model{"beetle.off", 1500, 1000, false},
                                          Model{"stanford-bunny.obj", 1000, 1000, false},
                                          Model{"kitten.xyz", 800, 0, true}, Model{"bunny-scan.pts", 1000, 1000, false}),

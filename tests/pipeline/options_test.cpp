@@ -146,11 +146,11 @@ TEST(MeshOptions, MoreEffortGivesLessEnergy) {
 
 TEST(Runs, CancelBeforeAndDuringTheRun) {
   const Shape ball = gallery_shape("sphere");
-  evenmesh::Run before(1);
+  evenmesh::ExecutionContext before(1);
   before.cancel();
   EXPECT_THROW(mesh_shape(ball, {.vertices = 200}, before), Cancelled);
   for (const char* stage : {"sample", "balance", "connect", "place", "refine", "measure"}) {
-    evenmesh::Run during(2);
+    evenmesh::ExecutionContext during(2);
     during.on_progress([&](std::string_view running, double) {
       if (running == stage) during.cancel();
     });
@@ -159,16 +159,16 @@ TEST(Runs, CancelBeforeAndDuringTheRun) {
 }
 
 TEST(Runs, ProgressGrowsToOne) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   double last = 0;
   std::size_t calls = 0;
-  run.on_progress([&](std::string_view stage, double fraction) {
+  context.on_progress([&](std::string_view stage, double fraction) {
     EXPECT_FALSE(stage.empty());
     EXPECT_GE(fraction, last);
     last = fraction;
     ++calls;
   });
-  mesh_shape(gallery_shape("touching-balls"), {.vertices = 300}, run);
+  mesh_shape(gallery_shape("touching-balls"), {.vertices = 300}, context);
   EXPECT_EQ(last, 1);
   EXPECT_GT(calls, 5u);
 }

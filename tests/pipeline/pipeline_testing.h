@@ -14,8 +14,8 @@
 namespace evenmesh {
 
 inline MeshResult meshed(const Shape& shape, const MeshOptions& options, unsigned threads = 2) {
-  Run run(threads);
-  return mesh_shape(shape, options, run);
+  ExecutionContext context(threads);
+  return mesh_shape(shape, options, context);
 }
 
 /// Closed, two-manifold, oriented outward, not through itself, and the report tells the same.

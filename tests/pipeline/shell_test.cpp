@@ -145,7 +145,8 @@ TEST(ShellMethod, GivesTheShellWhenAsked) {
   kept.shell_cut.emplace();
   for (const bool wrap : {false, true}) {
     options.wrap = wrap;
-    const MeshResult result = mesh_shape(shape_from_mesh(make_icosphere(3)), options, Run::silent(), &kept);
+    const MeshResult result =
+        mesh_shape(shape_from_mesh(make_icosphere(3)), options, ExecutionContext::silent(), &kept);
     ASSERT_TRUE(kept.shell && kept.shell_cut);
     EXPECT_EQ(kept.shell->voxels.size(), result.report.shell_voxels);
     ASSERT_EQ(kept.shell->values.size(), kept.shell->voxels.size());
@@ -158,7 +159,8 @@ TEST(ShellMethod, GivesTheShellWhenAsked) {
     EXPECT_GT(cut, 50u);
     EXPECT_LT(cut, kept.shell->voxels.size() / 8);
   }
-  mesh_shape(shape_from_mesh(make_icosphere(3)), {.vertices = 100, .method = Method::raster}, Run::silent(), &kept);
+  mesh_shape(shape_from_mesh(make_icosphere(3)), {.vertices = 100, .method = Method::raster},
+             ExecutionContext::silent(), &kept);
   EXPECT_FALSE(kept.shell || kept.shell_cut) << "rays have none";
 }
 

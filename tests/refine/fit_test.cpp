@@ -26,14 +26,14 @@ struct Pointed {
 class FitExtremes : public testing::TestWithParam<Pointed> {};
 
 TEST_P(FitExtremes, LowersTheLargestDeviation) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const Shape shape = shape_from_expression(GetParam().expression, {}, {{-1.2, -1.2, -1.2}, {1.2, 1.2, 1.7}});
-  const auto projector = make_projector(shape, shape.bounds, run);
+  const auto projector = make_projector(shape, shape.bounds, context);
   CellMesh cells = mesh_of_cells(shape, 80, 400);
   expect_closed_manifold(cells.mesh);
   Mesh fitted = cells.mesh;
   const double worst = worst_score(fitted);
-  EXPECT_GT(fit_extremes(fitted, cells.samples, cells.labels, projector.get(), 0, run), 0u);
+  EXPECT_GT(fit_extremes(fitted, cells.samples, cells.labels, projector.get(), 0, context), 0u);
   expect_closed_manifold(fitted);
   EXPECT_LT(largest_deviation(cells, fitted), 0.9 * largest_deviation(cells, cells.mesh));
   EXPECT_GE(worst_score(fitted), std::min(worst, 0.92) - 1e-9) << "triangles stay good";
@@ -46,21 +46,21 @@ INSTANTIATE_TEST_SUITE_P(Shapes, FitExtremes,
                          [](const auto& of) { return std::string(of.param.name); });
 
 TEST(FitSmooth, LeavesSmoothSurfacesAlone) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const Shape shape = gallery_shape("sphere");
-  const auto projector = make_projector(shape, shape.bounds, run);
+  const auto projector = make_projector(shape, shape.bounds, context);
   CellMesh cells = mesh_of_cells(shape, 60, 300);
   for (Vec3& v : cells.mesh.vertices) v = projector->project(v, 0.1);
   const auto vertices = cells.mesh.vertices;
-  EXPECT_EQ(fit_extremes(cells.mesh, cells.samples, cells.labels, projector.get(), 0, run), 0u);
+  EXPECT_EQ(fit_extremes(cells.mesh, cells.samples, cells.labels, projector.get(), 0, context), 0u);
   EXPECT_EQ(cells.mesh.vertices, vertices);
 }
 
 TEST(FitSmooth, SamplesOfDustAreLeftOut) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   CellMesh cells = mesh_of_cells(gallery_shape("sphere"), 40, 100);
   std::fill(cells.labels.begin(), cells.labels.end(), 0xffffffffu);
-  EXPECT_EQ(fit_extremes(cells.mesh, cells.samples, cells.labels, nullptr, 0, run), 0u);
+  EXPECT_EQ(fit_extremes(cells.mesh, cells.samples, cells.labels, nullptr, 0, context), 0u);
 }
 
 }  // namespace

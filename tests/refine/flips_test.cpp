@@ -25,7 +25,7 @@ double largest_opposite_angles(const Mesh& mesh) {
 
 TEST(Flips, MakeAShakenSphereDelaunay) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    Mesh mesh = shaken_sphere(3, 0.02, seed);
+    Mesh mesh = perturbed_sphere(3, 0.02, seed);
     const auto vertices = mesh.vertices;
     ASSERT_GT(largest_opposite_angles(mesh), std::numbers::pi + 0.01);
     const std::size_t triangles = mesh.triangles.size();

@@ -7,17 +7,17 @@ namespace evenmesh {
 namespace {
 
 TEST(Polish, NeverLowersTheWorstScore) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const Shape shape = gallery_shape("sphere");
-  const auto projector = make_projector(shape, shape.bounds, run);
+  const auto projector = make_projector(shape, shape.bounds, context);
   for (std::uint64_t seed = 1; seed <= 6; ++seed)
     for (const Projector* onto :
          {static_cast<const Projector*>(nullptr), static_cast<const Projector*>(projector.get())}) {
-      Mesh mesh = shaken_sphere(3, 0.025, seed);
+      Mesh mesh = perturbed_sphere(3, 0.025, seed);
       flip_to_delaunay(mesh);
       const auto triangles = mesh.triangles;
       const double before = worst_score(mesh), volume = volume_of(mesh);
-      EXPECT_GT(polish(mesh, onto, run), 0u);
+      EXPECT_GT(polish(mesh, onto, context), 0u);
       EXPECT_GE(worst_score(mesh), before);
       EXPECT_EQ(mesh.triangles, triangles);
       EXPECT_NEAR(volume_of(mesh), volume, 0.05);
@@ -27,10 +27,10 @@ TEST(Polish, NeverLowersTheWorstScore) {
 }
 
 TEST(Polish, LeavesGoodTrianglesAlone) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   Mesh mesh = make_icosphere(3);
   const auto vertices = mesh.vertices;
-  EXPECT_EQ(polish(mesh, nullptr, run), 0u);
+  EXPECT_EQ(polish(mesh, nullptr, context), 0u);
   EXPECT_EQ(mesh.vertices, vertices);
 }
 
@@ -38,52 +38,52 @@ TEST(Polish, LeavesGoodTrianglesAlone) {
 struct HeldTorus {
   explicit HeldTorus(std::uint64_t seed) : mesh(make_torus(1, 0.35, 24, 8)) {
     constexpr int pieces = 240;
-    CreaseChain circle;
+    FeatureCurve circle;
     for (int i = 0; i <= pieces; ++i) {
       const double angle = 2 * std::numbers::pi * (i % pieces) / pieces;
       circle.points.push_back({1.35 * std::cos(angle), 1.35 * std::sin(angle), 0});
       circle.arc.push_back(i);
     }
-    holds.creases.chains.push_back(circle);
+    constraints.features.curves.push_back(circle);
     Random random(seed);
     const auto shaken = [&] { return 0.16 * (random.uniform() - 0.5); };
     for (Vec3& v : mesh.vertices) {
-      const bool held = std::abs(std::hypot(v.x, v.y) - 1.35) < 1e-9;
-      holds.chain.push_back(held ? 0 : Holds::free);
-      if (!held) v += {shaken(), shaken(), shaken()};
+      const bool fixed = std::abs(std::hypot(v.x, v.y) - 1.35) < 1e-9;
+      constraints.curve.push_back(fixed ? 0 : VertexConstraints::free);
+      if (!fixed) v += {shaken(), shaken(), shaken()};
     }
     for (const Triangle& t : mesh.triangles)
       for (std::size_t c = 0; c < 3; ++c)
-        if (const auto [v, w] = std::minmax(t[c], t[(c + 1) % 3]); holds.vertex(v) && holds.vertex(w))
-          holds.edges.push_back({v, w});
-    std::sort(holds.edges.begin(), holds.edges.end());
+        if (const auto [v, w] = std::minmax(t[c], t[(c + 1) % 3]); constraints.vertex(v) && constraints.vertex(w))
+          constraints.edges.push_back({v, w});
+    std::sort(constraints.edges.begin(), constraints.edges.end());
   }
-  double bulge() const {
+  double chordal_deviation() const {
     const VertexRings rings(mesh);
     double most = 0;
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
-      if (holds.vertex(v)) most = std::max(most, holds.bulge(mesh, v, rings.neighbours(v)));
+      if (constraints.vertex(v)) most = std::max(most, constraints.chordal_deviation(mesh, v, rings.neighbours(v)));
     return most;
   }
 
   Mesh mesh;
-  Holds holds;
+  VertexConstraints constraints;
 };
 
 TEST(Polish, DoesNotSlideVerticesSoFarThatTheyCutTheirCreaseOff) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const double even = 1.35 * (1 - std::cos(std::numbers::pi / 24));
   double unlimited = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed)
     for (const double most : {1.1 * even, 10.0}) {
       HeldTorus torus(seed);
-      EXPECT_NEAR(torus.bulge(), even, 1e-3);
-      torus.holds.most_bulge = most;
-      EXPECT_GT(polish(torus.mesh, nullptr, run, torus.holds), 0u);
+      EXPECT_NEAR(torus.chordal_deviation(), even, 1e-3);
+      torus.constraints.max_chordal_deviation = most;
+      EXPECT_GT(polish(torus.mesh, nullptr, context, torus.constraints), 0u);
       if (most > 1)
-        unlimited = std::max(unlimited, torus.bulge());
+        unlimited = std::max(unlimited, torus.chordal_deviation());
       else
-        EXPECT_LE(torus.bulge(), 1.1 * even + 1e-12);
+        EXPECT_LE(torus.chordal_deviation(), 1.1 * even + 1e-12);
     }
   EXPECT_GT(unlimited, 1.2 * even) << "or the limit is not tested";
 }

@@ -9,10 +9,10 @@ namespace evenmesh {
 namespace {
 
 TEST(MeshProjector, FindsTheClosestPointWithinTheLimit) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const Mesh mesh = make_torus();
   const Shape shape = shape_from_mesh(mesh);
-  const auto projector = make_projector(shape, shape.bounds, run);
+  const auto projector = make_projector(shape, shape.bounds, context);
   const SurfaceQuery surface(mesh);
   Random random(1);
   for (int n = 0; n < 200; ++n) {
@@ -26,10 +26,10 @@ TEST(MeshProjector, FindsTheClosestPointWithinTheLimit) {
 }
 
 TEST(MeshProjector, CapsAreFacesOfTheBounds) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const Shape shape = shape_from_mesh(make_icosphere(4));
   const Box bounds{{-2, -2, -2}, {0.5, 2, 2}};
-  const auto projector = make_projector(shape, bounds, run);
+  const auto projector = make_projector(shape, bounds, context);
   const auto expect_near = [](const Vec3& p, const Vec3& q) { EXPECT_LT(norm(p - q), 0.004); };  // of the faceted ball
   expect_near(projector->project({0.53, 0.2, 0.1}, 0.2), {0.5, 0.2, 0.1});
   expect_near(projector->project({0.45, 0.2, 0.1}, 0.2), {0.5, 0.2, 0.1});
@@ -43,11 +43,11 @@ TEST(MeshProjector, CapsAreFacesOfTheBounds) {
 }
 
 TEST(FieldProjector, LandsOnTheZeroSet) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   for (const char* name : {"sphere", "torus", "tangle", "octic", "heart"}) {
     const Shape shape = gallery_shape(name);
-    const auto projector = make_projector(shape, shape.bounds, run);
-    const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, 24), run);
+    const auto projector = make_projector(shape, shape.bounds, context);
+    const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, 24), context);
     const double h = samples.grid.spacing;
     Random random(2);
     std::size_t missed = 0;
@@ -67,9 +67,9 @@ TEST(FieldProjector, LandsOnTheZeroSet) {
 }
 
 TEST(FieldProjector, FindsTheSphereInDoublePrecision) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const Shape shape = gallery_shape("sphere");
-  const auto projector = make_projector(shape, shape.bounds, run);
+  const auto projector = make_projector(shape, shape.bounds, context);
   Random random(3);
   for (int n = 0; n < 200; ++n) {
     const double x = random.gaussian(), y = random.gaussian(), z = random.gaussian(), r = 0.95 + 0.1 * random.uniform();
@@ -80,11 +80,11 @@ TEST(FieldProjector, FindsTheSphereInDoublePrecision) {
 }
 
 TEST(FieldProjector, CapsAreFacesOfTheBounds) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   // A ball cut flat at x = 0.5.
   const Box bounds{{-1.1, -1.1, -1.1}, {0.5, 1.1, 1.1}};
   const Shape shape = shape_from_expression("r - 1", {}, bounds);
-  const auto projector = make_projector(shape, bounds, run);
+  const auto projector = make_projector(shape, bounds, context);
   for (const double y : {0.0, 0.3, -0.6})
     for (const double x : {0.47, 0.5, 0.53}) EXPECT_NEAR(projector->project({x, y, 0.1}, 0.2).x, 0.5, 1e-12);
   EXPECT_NEAR(norm(projector->project({-0.9, 0.1, 0.4}, 0.2)), 1, 1e-12);
@@ -141,10 +141,10 @@ TEST(StepOnto, LandsWhatIsNearAndLeavesTheRest) {
 }
 
 TEST(Projector, IndicatorsHaveNone) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const Shape shape =
       shape_from_indicator([](const Vec3& p) { return norm(p) < 1; }, {{-1.1, -1.1, -1.1}, {1.1, 1.1, 1.1}});
-  EXPECT_EQ(make_projector(shape, shape.bounds, run), nullptr);
+  EXPECT_EQ(make_projector(shape, shape.bounds, context), nullptr);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 namespace evenmesh {
 
 /// Vertices moved by a Gaussian of `amplitude`, then back onto the sphere around the origin.
-inline Mesh shaken_sphere(int levels, double amplitude, std::uint64_t seed) {
+inline Mesh perturbed_sphere(int levels, double amplitude, std::uint64_t seed) {
   Mesh mesh = make_icosphere(levels);
   Random random(seed);
   for (Vec3& v : mesh.vertices) {
@@ -36,7 +36,7 @@ inline std::size_t edge_count(const Mesh& mesh) {
 inline void expect_closed_manifold(const Mesh& mesh) {
   const HalfEdges edges(mesh.triangles, mesh.vertices.size());
   for (std::size_t h = 0; h < 3 * mesh.triangles.size(); ++h) ASSERT_NE(edges.opposite(h), HalfEdges::none);
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) ASSERT_LE(edges.fans(v), 1u);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) ASSERT_LE(edges.umbrellas(v), 1u);
   EXPECT_EQ(2 * edge_count(mesh), 3 * mesh.triangles.size()) << "no edge twice";
 }
 
@@ -62,13 +62,13 @@ struct CellMesh {
 };
 
 inline CellMesh mesh_of_cells(const Shape& shape, std::size_t resolution, std::size_t count) {
-  Run run(2);
-  CellMesh result{sample_shape(shape, make_grid(shape.bounds, resolution), run), {}, {}};
-  CellEvaluator evaluator(result.samples, run);
-  result.mesh.vertices = balance_seeds(evaluator, count, {.evaluations = 40}, run).seeds;
+  ExecutionContext context(2);
+  CellMesh result{sample_shape(shape, make_grid(shape.bounds, resolution), context), {}, {}};
+  CellEvaluator evaluator(result.samples, context);
+  result.mesh.vertices = relax_seeds(evaluator, count, {.evaluations = 40}, context).seeds;
   evaluator.nearest(result.mesh.vertices, result.labels);
-  const LabelComplex complex = connect_labels(result.samples, result.labels, result.mesh.vertices, run);
-  for (const CellPiece& piece : complex.pieces) result.mesh.vertices.push_back(piece.centroid);
+  const LabelComplex complex = connect_labels(result.samples, result.labels, result.mesh.vertices, context);
+  for (const CellComponent& piece : complex.pieces) result.mesh.vertices.push_back(piece.centroid);
   result.mesh.triangles = complex.triangles;
   return result;
 }

@@ -35,9 +35,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(const Mesh& 
 }
 
 TEST(Untangle, RepairsATangledSphere) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   const Shape shape = gallery_shape("sphere");
-  const auto projector = make_projector(shape, shape.bounds, run);
+  const auto projector = make_projector(shape, shape.bounds, context);
   for (const Projector* onto :
        {static_cast<const Projector*>(projector.get()), static_cast<const Projector*>(nullptr)}) {
     Mesh mesh = make_icosphere(2);
@@ -45,7 +45,7 @@ TEST(Untangle, RepairsATangledSphere) {
               mesh.vertices[60]);  // two vertices change places: their triangles cross everything between
     mesh.vertices[100] += 0.4 * Vec3{0.3, -0.5, 0.7};
     ASSERT_FALSE(crossing_pairs(mesh).empty());
-    EXPECT_EQ(untangle(mesh, onto, crossing_pairs, run), 0u);
+    EXPECT_EQ(untangle(mesh, onto, crossing_pairs, context), 0u);
     EXPECT_TRUE(crossing_pairs(mesh).empty());
     expect_closed_manifold(mesh);
     EXPECT_GT(volume_of(mesh), 3);
@@ -54,23 +54,23 @@ TEST(Untangle, RepairsATangledSphere) {
 }
 
 TEST(Untangle, LeavesGoodMeshesAlone) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   Mesh mesh = make_icosphere(2);
   const Mesh before = mesh;
   std::size_t searches = 0;
   const auto find = [&](const Mesh& m) { return ++searches, crossing_pairs(m); };
-  EXPECT_EQ(untangle(mesh, nullptr, find, run), 0u);
+  EXPECT_EQ(untangle(mesh, nullptr, find, context), 0u);
   EXPECT_EQ(searches, 1u);
   EXPECT_EQ(mesh.vertices, before.vertices);
   EXPECT_EQ(mesh.triangles, before.triangles);
 }
 
 TEST(Untangle, TellsHowManyAreLeftAndKeepsTheBest) {
-  evenmesh::Run run(1);
+  evenmesh::ExecutionContext context(1);
   // Two balls that overlap: no smoothing of a few rings pulls them apart.
   Mesh mesh = merged(make_icosphere(2), translated(make_icosphere(2), {0.31, 0.17, 0.05}));
   const std::size_t before = crossing_pairs(mesh).size();
-  const std::size_t left = untangle(mesh, nullptr, crossing_pairs, run);
+  const std::size_t left = untangle(mesh, nullptr, crossing_pairs, context);
   EXPECT_LE(left, before);
   EXPECT_EQ(crossing_pairs(mesh).size(), left);
   expect_closed_manifold(mesh);

@@ -5,7 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "sample_checks.h"
+#include "grid/coarsen.h"
+#include "grid/sample_checks.h"
 
 namespace evenmesh {
 namespace {

@@ -6,14 +6,14 @@
 #include <numbers>
 
 #include "evenmesh/error.h"
+#include "grid/sample_checks.h"
 #include "sample/field_checks.h"
-#include "sample_checks.h"
 #include "test_fields.h"
 
 namespace evenmesh {
 namespace testing {
 
-INSTANTIATE_TEST_SUITE_P(Field, SampleForms, ::testing::Values(on_cpu, plain, dear), name_of_form);
+INSTANTIATE_TEST_SUITE_P(Field, SampleForms, ::testing::Values(on_cpu, plain, expensive), name_of_form);
 INSTANTIATE_TEST_SUITE_P(Cpu, GallerySamples, gallery_in(on_cpu), name_of_gallery_form);
 
 }  // namespace testing
@@ -61,9 +61,9 @@ TEST(SampleField, IndicatorsGetNormalsFromTheirNeighbours) {
 }
 
 TEST(SampleField, CancelStops) {
-  evenmesh::Run run;
-  run.cancel();
-  EXPECT_THROW(sample_shape(ball(), make_grid(ball().bounds, 50), run), Cancelled);
+  evenmesh::ExecutionContext context;
+  context.cancel();
+  EXPECT_THROW(sample_shape(ball(), make_grid(ball().bounds, 50), context), Cancelled);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include "core/random.h"
 #include "evenmesh/error.h"
 #include "geometry/primitives.h"
-#include "sample_checks.h"
+#include "grid/sample_checks.h"
 
 namespace evenmesh {
 namespace {

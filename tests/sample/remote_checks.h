@@ -43,10 +43,10 @@ class RemoteForms : public FormTest {
 };
 
 TEST_P(RemoteForms, SamplesAreTheSameAndCallsFew) {
-  const bool dear = GetParam().cost > 1;
-  const std::size_t resolution = dear ? 96 : 128;
+  const bool expensive = GetParam().cost > 1;
+  const std::size_t resolution = expensive ? 96 : 128;
   std::vector<const char*> names{"torus", "menger-2", "barth"};
-  if (!dear) names.insert(names.end(), {"octic", "gyroid", "cube", "julia"});
+  if (!expensive) names.insert(names.end(), {"octic", "gyroid", "cube", "julia"});
   for (const char* name : names) {
     const Shape shape = gallery_shape(name);
     const Remote far = remote(shape);

@@ -47,7 +47,7 @@ Shape field_shape(F f, const Box& bounds, bool smooth = true) {
 
 /// The same, asked for gradients as seldom as can be.
 template <typename F>
-class DearField final : public PlainField<F> {
+class ExpensiveField final : public PlainField<F> {
  public:
   using PlainField<F>::PlainField;
   bool differentiates() const override { return false; }
@@ -63,15 +63,16 @@ inline auto doubles_of(const Shape& shape) {
 /// Expressions without intervals, and such whose gradients are dear.
 inline const testing::Form plain{
     .name = "plain", .of = [](const Shape& shape, double) { return field_shape(doubles_of(shape), shape.bounds); }};
-inline const testing::Form dear{.name = "dear",
-                                .of =
-                                    [](const Shape& shape, double) {
-                                      using Doubles = decltype(doubles_of(shape));
-                                      Shape made = shape;
-                                      made.what = std::make_shared<const DearField<Doubles>>(doubles_of(shape));
-                                      return made;
-                                    },
-                                .roots = 4e-3};
+inline const testing::Form expensive{.name = "dear",
+                                     .of =
+                                         [](const Shape& shape, double) {
+                                           using Doubles = decltype(doubles_of(shape));
+                                           Shape made = shape;
+                                           made.what =
+                                               std::make_shared<const ExpensiveField<Doubles>>(doubles_of(shape));
+                                           return made;
+                                         },
+                                     .roots = 4e-3};
 
 /// Ball of radius 1 with the interval of its distance.
 class BallField : public Field {

@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 #include "geometry/primitives.h"
-#include "sample_checks.h"
+#include "grid/sample_checks.h"
 
 namespace evenmesh {
 namespace {
@@ -16,7 +16,7 @@ Mesh without(Mesh mesh, const std::function<bool(const Vec3&)>& removed) {
   return mesh;
 }
 
-void expect_settled(const SampleSet& set, const Mesh& mesh) {
+void expect_resolved(const SampleSet& set, const Mesh& mesh) {
   expect_well_formed(set);
   expect_one_sign_grid(set);
   for (const std::uint32_t source : set.source) EXPECT_LT(source, mesh.triangles.size());
@@ -27,7 +27,7 @@ TEST(Vote, SmallHolesAreClosed) {
   const Mesh holey = without(ball, [](const Vec3& c) { return c.z > 0.97 || (c.x > 0.6 && c.y > 0.7); });
   ASSERT_LT(holey.triangles.size(), ball.triangles.size());
   const SampleSet whole = sampled(ball, 80), set = sampled(holey, 80);
-  expect_settled(set, holey);
+  expect_resolved(set, holey);
   EXPECT_GT(set.disagreements, 0u);
   const double volume = volume_of(whole, expect_one_sign_grid(whole));
   EXPECT_NEAR(volume_of(set, expect_one_sign_grid(set)), volume, 0.03 * volume);
@@ -37,7 +37,7 @@ TEST(Vote, TubeWithoutLidsIsASolid) {
   // The side of a box without top and bottom: two directions see the inside, the third sees nothing.
   const Mesh tube = without(make_box({1, 1, 1}, 8), [](const Vec3& c) { return std::abs(c.z) > 0.99; });
   const SampleSet set = sampled(tube, 40);
-  expect_settled(set, tube);
+  expect_resolved(set, tube);
   EXPECT_NEAR(volume_of(set, expect_one_sign_grid(set)), 8, 0.8);
   EXPECT_GT(set.disagreements, 1000u);
 }
@@ -48,7 +48,7 @@ TEST(Vote, InconsistentOrientationIsRead) {
   for (Triangle& t : mesh.triangles)
     if (random.below(2) == 0) std::swap(t[0], t[1]);
   const SampleSet set = sampled(mesh, 60);
-  expect_settled(set, mesh);
+  expect_resolved(set, mesh);
 }
 
 TEST(Vote, SoupsStillGiveASolid) {
@@ -60,7 +60,7 @@ TEST(Vote, SoupsStillGiveASolid) {
       soup.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
     const SampleSet set = sampled(soup, 50, 1);
-    expect_settled(set, soup);
+    expect_resolved(set, soup);
     EXPECT_GT(set.disagreements, 0u);
     expect_same(set, sampled(soup, 50, 2));
   }
@@ -69,7 +69,7 @@ TEST(Vote, SoupsStillGiveASolid) {
 TEST(Vote, LargerThanOneWordAndOneTask) {
   const Mesh ball = without(make_icosphere(4), [](const Vec3& c) { return c.x > 0.95 || c.z < -0.9; });
   const SampleSet set = sampled(ball, 150);
-  expect_settled(set, ball);
+  expect_resolved(set, ball);
   expect_same(set, sampled(ball, 150, 2));
 }
 

@@ -108,7 +108,7 @@ TEST(SceneCorpus, MutatedFilesGiveAValidShapeOrASentence) {
       const std::vector<char> bytes(text.begin(), text.end());  // so that a sanitizer sees a byte read behind it
       try {
         expect_valid(parse_scene({bytes.data(), bytes.size()}, files[i].filename().string(), corpus_folder() / "scene",
-                                 Run::silent(), {.triangles = 200'000}));
+                                 ExecutionContext::silent(), {.triangles = 200'000}));
         ++parsed;
       } catch (const UnusableInput& error) {
         ASSERT_GT(std::string(error.what()).size(), 10u);

@@ -188,9 +188,10 @@ TEST_F(Json, DepthAndSizeAreLimited) {
   expect_says(refusal(nested(501)), "is nested too deeply; a scene may have 500 nodes");
   expect_says(refusal(nested(100'000)), "is nested too deeply");
   expect_says(refusal(std::string(1'000'000, '[')), "is nested too deeply");
-  EXPECT_THROW(parse_scene(R"({"gallery": "sphere"})", "a.json", folder, Run::silent(), {.bytes = 10}), UnusableInput);
+  EXPECT_THROW(parse_scene(R"({"gallery": "sphere"})", "a.json", folder, ExecutionContext::silent(), {.bytes = 10}),
+               UnusableInput);
   const std::string move = R"({"transform": {"scale": 2}, "of": {"mesh": "tetra.off"}})";
-  EXPECT_THROW(parse_scene(move, "a.json", folder, Run::silent(), {.triangles = 3}), UnusableInput);
+  EXPECT_THROW(parse_scene(move, "a.json", folder, ExecutionContext::silent(), {.triangles = 3}), UnusableInput);
 }
 
 TEST_F(Json, FilesAreRelativeToTheScene) {

@@ -32,7 +32,7 @@ struct Form {
   std::shared_ptr<const Field> field(std::string_view text, double slope = 0) const {
     return std::get<std::shared_ptr<const Field>>(of(shape_from_expression(text), slope).what);
   }
-  bool has(const Shape& shape) const { return !expressions_only || program_of(*shape.field()) != nullptr; }
+  bool has(const Shape& shape) const { return !expressions_only || graph_of(*shape.field()) != nullptr; }
   /// Every cost-th of a list, the first in any case.
   template <typename T>
   std::vector<T> some(const std::vector<T>& list) const {

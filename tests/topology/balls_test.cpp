@@ -26,11 +26,11 @@ std::vector<std::array<std::uint32_t, 4>> crossings(const SampleSet& set) {
 }
 
 TEST(Balls, UnionHasTheCrossingsOfTheUnitedSolid) {
-  evenmesh::Run run(2);
+  evenmesh::ExecutionContext context(2);
   const SampleSet ball = sampled("r - 1");
   // One that overlaps, one apart, one within.
   const std::vector<Ball> balls{{{1, 0.1, 0}, 0.4}, {{-0.3, 1.4, 0.2}, 0.3}, {{0, 0, 0}, 0.5}};
-  const SampleSet made = unite_balls(ball, balls, run);
+  const SampleSet made = unite_balls(ball, balls, context);
   const SampleSet wanted =
       sampled("min(r - 1, sqrt((x-1)^2+(y-0.1)^2+z^2) - 0.4, sqrt((x+0.3)^2+(y-1.4)^2+(z-0.2)^2) - 0.3)");
   ASSERT_EQ(crossings(made), crossings(wanted));
@@ -46,9 +46,9 @@ TEST(Balls, UnionHasTheCrossingsOfTheUnitedSolid) {
 }
 
 TEST(Balls, TheGridsBorderStaysOutside) {
-  evenmesh::Run run(1);
-  const SampleSet made = unite_balls(sampled("r - 1"), std::vector<Ball>{{{2, 0, 0}, 0.7}}, run);
-  EXPECT_EQ(surface_parts(made, run).area.size(), 2u);  // walks every cube: they all close up
+  evenmesh::ExecutionContext context(1);
+  const SampleSet made = unite_balls(sampled("r - 1"), std::vector<Ball>{{{2, 0, 0}, 0.7}}, context);
+  EXPECT_EQ(surface_components(made, context).area.size(), 2u);  // walks every cube: they all close up
   for (const SampleBlock& b : made.blocks)
     for (std::uint32_t i = b.begin; i < b.end; ++i)
       EXPECT_LT((made.block_center(b).x + made.x[i] - made.grid.origin.x) / made.grid.spacing, made.grid.size[0] - 1.0);
@@ -63,13 +63,13 @@ TEST(Balls, OutsideLeavesTheBallsByTheNearestWay) {
   EXPECT_EQ(BallIndex({}).outside({1, 2, 3}), (Vec3{1, 2, 3}));
 }
 
-TEST(Pinches, AreWhereSheetsPassWithinACell) {
-  evenmesh::Run run(2);
-  EXPECT_TRUE(find_pinches(sampled("(sqrt(x^2+y^2)-1)^2+z^2-0.16"), run).empty());
+TEST(AmbiguousFaces, AreWhereSheetsPassWithinACell) {
+  evenmesh::ExecutionContext context(2);
+  EXPECT_TRUE(find_ambiguous_faces(sampled("(sqrt(x^2+y^2)-1)^2+z^2-0.16"), context).empty());
   // Two bodies that share an edge, diagonally.
-  const auto pinches = find_pinches(sampled("max(max(abs(x),abs(y),abs(z)) - 1, -x*y)"), run);
-  ASSERT_FALSE(pinches.empty());
-  for (const Vec3& p : pinches) EXPECT_LT(std::hypot(p.x, p.y), 0.3);
+  const auto ambiguous_faces = find_ambiguous_faces(sampled("max(max(abs(x),abs(y),abs(z)) - 1, -x*y)"), context);
+  ASSERT_FALSE(ambiguous_faces.empty());
+  for (const Vec3& p : ambiguous_faces) EXPECT_LT(std::hypot(p.x, p.y), 0.3);
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ TEST(Render, DrawsWiresMarksAndQuality) {
 }
 
 TEST(Render, IsTheSameForAnyNumberOfThreads) {
-  evenmesh::Run one(1), three(3);
+  evenmesh::ExecutionContext one(1), three(3);
   EXPECT_EQ(render_mesh(make_torus(), small, one).rgb, render_mesh(make_torus(), small, three).rgb);
 }
 

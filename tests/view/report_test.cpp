@@ -41,7 +41,9 @@ TEST(Report, ShowsACutThroughTheShell) {
     for (std::int32_t j = -12; j <= 12; ++j)
       if (const double off = std::abs(std::hypot(i, j) - 10); off < 2)
         cut.voxels.push_back({i, 0, j}), cut.values.push_back(static_cast<float>(0.1 * off));
-  EXPECT_EQ(count_of(report_html(result, "shell", Run::silent(), kept), "src=\"data:image/png;base64,iVBORw0KGgo"), 5u);
+  EXPECT_EQ(count_of(report_html(result, "shell", ExecutionContext::silent(), kept),
+                     "src=\"data:image/png;base64,iVBORw0KGgo"),
+            5u);
   for (const double window : {0.0, 8.0}) {
     const Image image = shell_cut_image(cut, result.mesh, 300, window);
     EXPECT_EQ(image.width, 300);
