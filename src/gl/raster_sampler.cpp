@@ -260,7 +260,7 @@ double RasterSampler::solidity(const Box& bounds, ExecutionContext& execution) c
   return agreement(draw(make_grid(bounds, resolution), bounds, execution).occupancy);
 }
 
-std::shared_ptr<const Sampler> RasterSampler::moved(const Affine& transform) const {
+std::shared_ptr<const RaySource> RasterSampler::moved(const Affine& transform) const {
   return std::make_shared<RasterSampler>(device_, name_, bounds_, transform.after(placement_));
 }
 

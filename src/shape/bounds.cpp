@@ -174,7 +174,7 @@ Box common_bounds(const std::vector<Shape>& operands) {
 Box find_bounds(const Shape& shape) {
   if (!shape.bounds.empty()) return shape.bounds;
   if (const Field* field = shape.field()) return find_bounds(*field);
-  if (shape.sampler())
+  if (shape.ray_source())
     throw InvalidInput("'" + shape.name + "' does not tell where it is: give --bounds x0,y0,z0,x1,y1,z1");
   const Compound* compound = shape.compound();
   if (compound == nullptr) return shape.bounds;

@@ -33,22 +33,12 @@ const std::map<std::string, Names> beside{
 
 /// Public headers, and the room from which on they may be included.
 const std::map<std::string, std::string> public_headers{
-    {"error.h", "core"},
-    {"execution_context.h", "core"},
-    {"mesh.h", "geometry"},
-    {"shape.h", "shape"},
-    {"measure.h", "measure"},
-    {"io.h", "io"},
-    {"mesh_shape.h", "pipeline"},
-    {"render.h", "view"},
-    {"points.h", "geometry"},
-    {"volume.h", "geometry"},
-    {"solid.h", "shape"},
-    {"scene.h", "scene"},
-    {"repair.h", "geometry"},
-    {"dexels.h", "shape"},
-    {"glsl.h", "gl"},
-    {"raster.h", "gl"},
+    {"error.h", "core"},      {"findings.h", "geometry"},   {"execution_context.h", "core"},
+    {"mesh.h", "geometry"},   {"shape.h", "shape"},         {"measure.h", "measure"},
+    {"io.h", "io"},           {"mesh_shape.h", "pipeline"}, {"render.h", "view"},
+    {"points.h", "geometry"}, {"volume.h", "geometry"},     {"solid.h", "shape"},
+    {"scene.h", "scene"},     {"repair.h", "geometry"},     {"dexels.h", "shape"},
+    {"glsl.h", "gl"},         {"raster.h", "gl"},
 };
 
 Names visible_from(const std::string& room) {
