@@ -36,7 +36,10 @@ class Refinement {
   Refined improve() {
     Mesh& mesh = draft_.mesh;
     VertexConstraints& constraints = draft_.constraints;
-    if (!measure_quality(mesh, context_).two_manifold()) return {std::move(mesh), intersections(mesh).size()};
+    if (!measure_quality(mesh, context_).two_manifold()) {
+      const std::size_t pairs = intersections(mesh).size();
+      return {std::move(mesh), pairs};
+    }
     flip_to_delaunay(mesh, constraints);
     polish(mesh, projector_.get(), context_, constraints);
     flip_to_delaunay(mesh, constraints);
