@@ -1,5 +1,3 @@
-#include "features/feature_curves.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +6,7 @@
 #include "features/apexes.h"
 #include "features/crowding.h"
 #include "features/edge_graph.h"
+#include "features/feature_curves.h"
 #include "features/feature_seeds.h"
 #include "geometry/union_find.h"
 
@@ -61,8 +60,8 @@ double length_of(const std::vector<Point>& points) {
 class Network {
  public:
   Network(const FeatureGraph& graph, double edge, double spacing)
-      : graph_(graph), edge_(edge), spacing_(spacing), parent_(graph.nodes.size()), planes_(graph.nodes.size()) {
-    for (Index v = 0; v < parent_.size(); ++v) parent_[v] = v, planes_[v] = graph.nodes[v].planes;
+      : graph_(graph), edge_(edge), spacing_(spacing), joined_(graph.nodes.size()), planes_(graph.nodes.size()) {
+    for (Index v = 0; v < planes_.size(); ++v) planes_[v] = graph.nodes[v].planes;
     list_links();
     trace();
   }
@@ -77,7 +76,7 @@ class Network {
   }
 
   const std::vector<Path>& paths() const { return paths_; }
-  Index junction(Index node) { return node == none ? none : find_root(parent_, node); }
+  Index junction(Index node) { return node == none ? none : joined_.find(node); }
 
   /// Where a junction is: where the planes of all its cubes meet.
   Vec3 place(Index root) {
@@ -172,7 +171,7 @@ class Network {
 
   /// Ends of living paths at every junction.
   std::vector<Index> degrees() {
-    std::vector<Index> count(parent_.size(), 0);
+    std::vector<Index> count(joined_.size(), 0);
     for (const Path& path : paths_)
       if (path.alive && path.from != none) ++count[junction(path.from)], ++count[junction(path.to)];
     return count;
@@ -209,7 +208,7 @@ class Network {
       Path& path = paths_[p];
       const Index a = junction(path.from), b = junction(path.to);
       if (a == b || count[a] < 2 || count[b] < 2) continue;
-      unite(parent_, a, b);
+      joined_.unite(a, b);
       const Index root = junction(a), other = root == a ? b : a;
       merge_into(root, other);
       for (const Index v : path.nodes) planes_[root].add(graph_.nodes[v].planes), members_[root].push_back(v);
@@ -228,22 +227,21 @@ class Network {
   /// Where two paths meet and no third, they are one.
   bool join_at_passings() {
     const std::vector<Index> count = degrees();
-    std::vector<std::vector<Index>> at(parent_.size());
+    std::vector<std::vector<Index>> at(joined_.size());
     for (Index p = 0; p < paths_.size(); ++p)
       if (paths_[p].alive && paths_[p].from != none)
         for (const Index end : {junction(paths_[p].from), junction(paths_[p].to)})
           if (count[end] == 2) at[end].push_back(p);
-    std::vector<Index> now(paths_.size());
-    for (Index p = 0; p < now.size(); ++p) now[p] = p;
+    UnionFind now(paths_.size());
     bool changed = false;
     for (Index v = 0; v < at.size(); ++v) {
       if (at[v].size() != 2) continue;
-      join(v, find_root(now, at[v][0]), find_root(now, at[v][1]), now);
+      join(v, now.find(at[v][0]), now.find(at[v][1]), now);
       changed = true;
     }
     return changed;
   }
-  void join(Index v, Index p, Index q, std::vector<Index>& now) {
+  void join(Index v, Index p, Index q, UnionFind& now) {
     Path& first = paths_[std::min(p, q)];
     if (p == q) {
       first.nodes.push_back(v);
@@ -257,7 +255,7 @@ class Network {
     first.nodes.insert(first.nodes.end(), second.nodes.begin(), second.nodes.end());
     first.to = second.to;
     second.alive = false;
-    unite(now, std::min(p, q), std::max(p, q));
+    now.unite(p, q);
     measure(first);
   }
   static void turn_round(Path& path) {
@@ -266,19 +264,18 @@ class Network {
   }
 
   void drop_small_parts() {
-    std::vector<Index> part(parent_.size());
-    for (Index v = 0; v < part.size(); ++v) part[v] = v;
-    std::vector<double> length(parent_.size(), 0);
+    UnionFind part(joined_.size());
+    std::vector<double> length(joined_.size(), 0);
     for (const Path& path : paths_)
-      if (path.alive && path.from != none) unite(part, junction(path.from), junction(path.to));
+      if (path.alive && path.from != none) part.unite(junction(path.from), junction(path.to));
     for (const Path& path : paths_)
-      if (path.alive && path.from != none) length[find_root(part, junction(path.from))] += path.length;
-    std::vector<Index> loose_ends(parent_.size(), 0);
+      if (path.alive && path.from != none) length[part.find(junction(path.from))] += path.length;
+    std::vector<Index> loose_ends(joined_.size(), 0);
     const std::vector<Index> count = degrees();
     for (Index v = 0; v < count.size(); ++v)
-      if (count[v] == 1) ++loose_ends[find_root(part, v)];
+      if (count[v] == 1) ++loose_ends[part.find(v)];
     for (Path& path : paths_) {
-      const Index root = path.from == none ? none : find_root(part, junction(path.from));
+      const Index root = path.from == none ? none : part.find(junction(path.from));
       const double most = root == none ? path.length : length[root], ends = root == none ? 0 : loose_ends[root];
       if (most < min_length * (1 + 5 * ends) * edge_) path.alive = false;
     }
@@ -290,7 +287,7 @@ class Network {
   Vec3 origin_;
   std::vector<std::vector<Link>> links_;
   std::vector<Path> paths_;
-  std::vector<Index> parent_;
+  UnionFind joined_;                             ///< nodes that are one junction
   std::vector<PlaneQuadric> planes_;             ///< by junction
   std::map<Index, std::vector<Index>> members_;  ///< by junction: the other nodes that are part of it
   std::vector<Index> degrees_;
