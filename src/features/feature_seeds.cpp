@@ -7,6 +7,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "geometry/segment.h"
 #include "grid/morton.h"
 
 namespace evenmesh {
@@ -127,13 +128,10 @@ void constrain_labels(const SampleSet& samples, const FeatureCurves& features, c
     double nearest = reach * reach;
     for (const auto& [c, i] : segments) {
       const FeatureCurve& curve = features.curves[c];
-      const Vec3 along = curve.points[i + 1] - curve.points[i], from = p - curve.points[i];
-      const double length2 = squared_norm(along);
-      const double share = length2 > 0 ? std::clamp(dot(from, along) / length2, 0.0, 1.0) : 0;
-      const double distance = squared_norm(from - share * along);
-      if (distance >= nearest) continue;
-      nearest = distance;
-      label = seed_at(features, seeds, c, curve.arc[i] + share * (curve.arc[i + 1] - curve.arc[i]));
+      const SegmentPoint on = closest_point_on_segment(p, curve.points[i], curve.points[i + 1]);
+      if (on.squared_distance >= nearest) continue;
+      nearest = on.squared_distance;
+      label = seed_at(features, seeds, c, curve.arc[i] + on.share * (curve.arc[i + 1] - curve.arc[i]));
     }
     return label;
   };
