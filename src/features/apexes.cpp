@@ -25,8 +25,8 @@ class TipFinder {
   /// The tip that is near to p, if there is one.
   std::optional<Vec3> near(Vec3 p) const {
     for (int step = 0; step < 3; ++step) {
-      PlaneQuadric planes;
-      each_around(p, [&](const Vec3& x, const Vec3& n) { planes.add(x - p, n); });
+      Quadric planes;
+      each_around(p, [&](const Vec3& x, const Vec3& n) { planes.add_plane(x - p, n); });
       if (planes.rank() < 3) return {};  // a crease at most, or nothing
       const Vec3 move = planes.minimum(3, 3);
       if (!(norm(move) < around * edge_)) return {};

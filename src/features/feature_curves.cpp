@@ -288,7 +288,7 @@ class Network {
   std::vector<std::vector<Link>> links_;
   std::vector<Path> paths_;
   UnionFind joined_;                             ///< nodes that are one junction
-  std::vector<PlaneQuadric> planes_;             ///< by junction
+  std::vector<Quadric> planes_;                  ///< by junction
   std::map<Index, std::vector<Index>> members_;  ///< by junction: the other nodes that are part of it
   std::vector<Index> degrees_;
 };
