@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "grid/morton.h"
 
@@ -269,25 +270,16 @@ SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, Exe
   return Union(samples, balls, context).result();
 }
 
-BallIndex::BallIndex(std::vector<Ball> balls, double largest_radius) : side_(largest_radius) {
-  for (const Ball& b : balls) side_ = std::max(side_, b.radius);
+BallIndex::BallIndex(std::vector<Ball> balls, double largest_radius)
+    : largest_(std::accumulate(balls.begin(), balls.end(), largest_radius,
+                               [](double largest, const Ball& b) { return std::max(largest, b.radius); })),
+      centers_(largest_) {
   for (const Ball& b : balls) add(b);
 }
 
 void BallIndex::add(const Ball& ball) {
-  const auto c = cell_of(ball.center);
-  cells_[key(c[0], c[1], c[2])].push_back(static_cast<std::uint32_t>(balls_.size()));
+  centers_.add(ball.center);
   balls_.push_back(ball);
-}
-
-std::array<std::int64_t, 3> BallIndex::cell_of(const Vec3& p) const {
-  return {static_cast<std::int64_t>(std::floor(p.x / side_)), static_cast<std::int64_t>(std::floor(p.y / side_)),
-          static_cast<std::int64_t>(std::floor(p.z / side_))};
-}
-
-std::int64_t BallIndex::key(std::int64_t i, std::int64_t j, std::int64_t k) {
-  constexpr std::int64_t mask = (1 << 21) - 1;
-  return (i & mask) << 42 | (j & mask) << 21 | (k & mask);
 }
 
 Vec3 BallIndex::outside(Vec3 p) const {
@@ -299,7 +291,7 @@ Vec3 BallIndex::outside(Vec3 p) const {
       const double length = norm(d), depth = balls_[b].radius - length;
       if (depth > deepest && length > 0) deepest = depth, out = balls_[b].center + d * (balls_[b].radius / length);
     });
-    if (deepest <= 1e-9 * side_) return p;
+    if (deepest <= 1e-9 * largest_) return p;
     p = out;
   }
   return p;
