@@ -83,8 +83,10 @@ class Gaps {
   void add_face(const Voxel& at, const Voxel& next, NearestSite own, NearestSite other,
                 std::vector<Face>& faces) const {
     Face face{.at = at};
-    face.sites[0] = site_index(sites_, at, own), face.sites[1] = site_index(sites_, next, other);
-    face.ends[0] = own.site(at), face.ends[1] = other.site(next);
+    face.sites[0] = site_index(sites_, at, own);
+    face.sites[1] = site_index(sites_, next, other);
+    face.ends[0] = own.site(at);
+    face.ends[1] = other.site(next);
     const Vec3 way = point(face, 1) - point(face, 0);
     face.width = norm(way);
     if (face.width < min_width * band_.grid().side) return;
@@ -119,7 +121,10 @@ class Gaps {
     std::vector<std::size_t> group(faces.size());
     for (std::uint32_t i = 0; i < faces.size(); ++i) {
       const std::uint32_t r = sets.find(i);
-      if (r == i) group[i] = groups.size(), groups.emplace_back();
+      if (r == i) {
+        group[i] = groups.size();
+        groups.emplace_back();
+      }
       groups[group[r]].push_back(i);
     }
     std::erase_if(groups, [](const auto& g) { return g.size() < min_faces; });

@@ -42,7 +42,9 @@ class NearSites {
       const bool against = dot(s.normal, along) < 0;
       if (q <= 0 || (against && oriented_)) continue;
       const double w = q * q * q * q;
-      point += w * s.point, normal += (against ? -w : w) * s.normal, sum += w;
+      point += w * s.point;
+      normal += (against ? -w : w) * s.normal;
+      sum += w;
     }
     if (!(sum > 0) || !(norm(normal) > 0.2 * sum)) return std::nullopt;
     return Plane{point / sum, normalized(normal)};
@@ -98,8 +100,9 @@ class Bridge {
       if (std::abs(height) > touch || squared_norm(back - height * n) > lead_ * lead_) return;
       made.layers[z] |= VoxelTile::bit(x, y);
       const Vec3 foot = sparse_.grid.side * height * n;
-      part.x.push_back(static_cast<float>(foot.x)), part.y.push_back(static_cast<float>(foot.y)),
-          part.z.push_back(static_cast<float>(foot.z));
+      part.x.push_back(static_cast<float>(foot.x));
+      part.y.push_back(static_cast<float>(foot.y));
+      part.z.push_back(static_cast<float>(foot.z));
       part.normal.push_back(pack_normal(n));
     });
     made.count_layers();

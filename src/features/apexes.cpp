@@ -41,7 +41,9 @@ class TipFinder {
     Vec3 sum;
     each_around(p, [&](const Vec3& x, const Vec3& n) {
       const double off = dot(n, p - x);
-      count += 1, squares += off * off, sum += n;
+      count += 1;
+      squares += off * off;
+      sum += n;
       nearest = std::min(nearest, norm(x - p));
     });
     return count > 0 && nearest < max_missing * samples_.grid.spacing && norm(sum) < max_mean_ * count &&

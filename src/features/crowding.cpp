@@ -39,7 +39,10 @@ class Crowding {
     for (Index p = 0; p < curve.points.size(); ++p) {
       const bool near_end = curve.from != none && (norm(curve.points[p] - curve.points.front()) < 1.5 * reach_ ||
                                                    norm(curve.points[p] - curve.points.back()) < 1.5 * reach_);
-      if (!near_end) ++asked, crowded += has_other_beside({c, p});
+      if (!near_end) {
+        ++asked;
+        crowded += has_other_beside({c, p});
+      }
     }
     return 3 * crowded > asked;
   }
@@ -71,13 +74,17 @@ FeatureCurves without_curves(const FeatureCurves& features, const std::vector<ch
   std::vector<Index> now(features.corners.size(), none);
   const auto corner = [&](Index c) {
     if (c == none) return none;
-    if (now[c] == none) now[c] = static_cast<Index>(kept.corners.size()), kept.corners.push_back(features.corners[c]);
+    if (now[c] == none) {
+      now[c] = static_cast<Index>(kept.corners.size());
+      kept.corners.push_back(features.corners[c]);
+    }
     return now[c];
   };
   for (std::size_t i = 0; i < features.curves.size(); ++i) {
     if (doomed[i]) continue;
     FeatureCurve curve = features.curves[i];
-    curve.from = corner(curve.from), curve.to = corner(curve.to);
+    curve.from = corner(curve.from);
+    curve.to = corner(curve.to);
     kept.curves.push_back(std::move(curve));
   }
   return kept;

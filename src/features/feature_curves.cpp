@@ -97,7 +97,8 @@ class Chains {
   }
   static FeatureCurve curve_of(const std::vector<PolylinePoint>& points, Index from, Index to) {
     FeatureCurve curve;
-    curve.from = from, curve.to = to;
+    curve.from = from;
+    curve.to = to;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double step = i == 0 ? 0
                                  : 0.5 * (points[i - 1].relative_sizing + points[i].relative_sizing) *

@@ -104,7 +104,8 @@ class Network {
     for (Index i = 0; i < graph_.links.size(); ++i) {
       const auto [a, b] = graph_.links[i];
       auto& list = graph_.sharp[i] ? links_ : weak;
-      list[a].push_back({b, i}), list[b].push_back({a, i});
+      list[a].push_back({b, i});
+      list[b].push_back({a, i});
     }
     std::vector<Index> ends;
     for (Index v = 0; v < links_.size(); ++v)
@@ -119,7 +120,8 @@ class Network {
       std::erase_if(ways, [&](const Link& way) { return way.id == links_[v][0].id; });
       if (ways.size() != 1) return;
       const Index next = ways[0].other;
-      links_[v].push_back(ways[0]), links_[next].push_back({v, ways[0].id});
+      links_[v].push_back(ways[0]);
+      links_[next].push_back({v, ways[0].id});
       v = next;
     }
   }
@@ -145,7 +147,10 @@ class Network {
       used[link.id] = 1;
     }
     path.to = link.other;
-    if (links_[v].size() == 2) path.nodes.push_back(v), path.from = path.to = none;
+    if (links_[v].size() == 2) {
+      path.nodes.push_back(v);
+      path.from = path.to = none;
+    }
     return path;
   }
 
@@ -168,7 +173,10 @@ class Network {
   std::vector<Index> degrees() {
     std::vector<Index> count(joined_.size(), 0);
     for (const Path& path : paths_)
-      if (path.alive && path.from != none) ++count[junction(path.from)], ++count[junction(path.to)];
+      if (path.alive && path.from != none) {
+        ++count[junction(path.from)];
+        ++count[junction(path.to)];
+      }
     return count;
   }
   Index degree(Index root) {
@@ -185,7 +193,10 @@ class Network {
       const Index a = junction(path.from), b = junction(path.to);
       const bool spur = (count[a] == 1) != (count[b] == 1) && path.length < spur_length * edge_;
       const bool loop = a == b && path.length < loop_length * edge_;
-      if (spur || loop) path.alive = false, changed = true;
+      if (spur || loop) {
+        path.alive = false;
+        changed = true;
+      }
     }
     return changed;
   }
@@ -206,8 +217,12 @@ class Network {
       joined_.unite(a, b);
       const Index root = junction(a), other = root == a ? b : a;
       merge_into(root, other);
-      for (const Index v : path.nodes) planes_[root].add(graph_.nodes[v].planes), members_[root].push_back(v);
-      path.alive = false, changed = true;
+      for (const Index v : path.nodes) {
+        planes_[root].add(graph_.nodes[v].planes);
+        members_[root].push_back(v);
+      }
+      path.alive = false;
+      changed = true;
     }
     return changed;
   }

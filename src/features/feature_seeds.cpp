@@ -102,7 +102,8 @@ bool follows(const FeatureCurve& curve, double edge) {
 
 FeatureSeeds place_feature_seeds(const FeatureCurves& features, double edge) {
   FeatureSeeds seeds;
-  seeds.places = features.corners, seeds.corners = features.corners.size();
+  seeds.places = features.corners;
+  seeds.corners = features.corners.size();
   std::set<std::pair<std::uint32_t, std::uint32_t>> joined;  // corners with an edge between them
   for (std::uint32_t c = 0; c < features.curves.size(); ++c) {
     const FeatureCurve& curve = features.curves[c];
@@ -110,7 +111,8 @@ FeatureSeeds place_feature_seeds(const FeatureCurves& features, double edge) {
     std::uint32_t n = segments_of(curve, edge);
     if (n == 1 && !joined.insert(std::minmax(curve.from, curve.to)).second) n = 2;
     const auto first = static_cast<std::uint32_t>(seeds.places.size());
-    seeds.first.push_back(first), seeds.segments.push_back(n);
+    seeds.first.push_back(first);
+    seeds.segments.push_back(n);
     for (std::uint32_t k = closed ? 0 : 1; k < n; ++k) seeds.places.push_back(point_at(curve, curve.length() * k / n));
     for (std::uint32_t k = 0; k < n; ++k) {
       const double at = curve.length() / n;

@@ -25,7 +25,8 @@ std::vector<std::uint32_t> RegularizationBalls::next_round(std::span<const BadEd
     index.near(0.5 * (edge.from + edge.to), 0.5 * length, [&](std::uint32_t b) {
       const double distance2 = closest_point_on_segment(active[b].center, edge.from, edge.to).squared_distance;
       if (distance2 >= active[b].radius * active[b].radius) return;
-      meets_ball = true, met[b] = 1;
+      meets_ball = true;
+      met[b] = 1;
     });
     if (meets_ball) continue;
     const double l = length > 0 ? length : edge_;

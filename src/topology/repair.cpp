@@ -70,7 +70,10 @@ class Planner {
     for_samples(defective, [&](std::uint32_t, std::uint32_t l, const Vec3& p) {
       Cell& cell = cells_[l];
       const double distance = squared_norm(p - seeds_[l]);
-      if (distance > cell.farthest) cell.farthest = distance, cell.far_sample = p;
+      if (distance > cell.farthest) {
+        cell.farthest = distance;
+        cell.far_sample = p;
+      }
     });
   }
 
@@ -85,7 +88,10 @@ class Planner {
     bool ambiguous = false;
     ambiguous_faces_.near(middle, reach, [&](std::uint32_t i) {
       ambiguous = true;
-      if (!planned_[i]) planned_[i] = 1, put_ball(ambiguous_faces_[i]);
+      if (!planned_[i]) {
+        planned_[i] = 1;
+        put_ball(ambiguous_faces_[i]);
+      }
     });
     if (ambiguous) return;
     if (std::min(cells_[a].samples, cells_[b].samples) < fewest_samples) return put_ball(middle);
@@ -111,7 +117,8 @@ class Planner {
       if (!grown_[b] && ball.radius + 0.5 * step > most) return;
       met = true;
       if (grown_[b]) return;
-      grown_[b] = 1, ball.radius += step;
+      grown_[b] = 1;
+      ball.radius += step;
       repair_.changed.push_back(b);
     });
     new_balls_.near(p, 0,
@@ -197,7 +204,8 @@ void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std
   for (const std::uint32_t s : order) {
     if (count == 0) break;
     if (beside[s]) continue;
-    gone[s] = 1, --count;
+    gone[s] = 1;
+    --count;
     index.near(seeds[s], apart, [&](std::uint32_t t) { beside[t] = 1; });
   }
   std::size_t kept = 0;
