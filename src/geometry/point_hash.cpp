@@ -44,12 +44,6 @@ void PointHash::grow() {
     if (cell.first != none) cells_[slot_of(cell.key)] = cell;
 }
 
-std::uint64_t PointHash::key(const Index& cell) {
-  constexpr std::int64_t middle = 1 << 20;
-  return std::uint64_t(cell[2] + middle) << 42 | std::uint64_t(cell[1] + middle) << 21 |
-         std::uint64_t(cell[0] + middle);
-}
-
 PointHash::Index PointHash::cell_at(const Vec3& p) const {
   const auto at = [&](int a) {
     return static_cast<std::int64_t>(std::clamp(std::floor((p[a] - origin_[a]) / side_), -farthest, farthest));
