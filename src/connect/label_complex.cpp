@@ -252,7 +252,10 @@ class Splitter {
       Index best_root = 0;
       for (auto it = first; it != links.end() && it->first == root;) {
         const auto next = std::upper_bound(it, links.end(), *it);
-        if (next - it > best) best = next - it, best_root = it->second;
+        if (next - it > best) {
+          best = next - it;
+          best_root = it->second;
+        }
         it = next;
       }
       if (best > 0)

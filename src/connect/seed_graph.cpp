@@ -39,13 +39,19 @@ class Witness {
     delaunay.push_back(ordered(a, b));
     if (edges < 3) return;
     const Index c = near[2].second;
-    candidates.push_back(ordered(a, c)), candidates.push_back(ordered(b, c));
+    candidates.push_back(ordered(a, c));
+    candidates.push_back(ordered(b, c));
     std::array<Index, 3> corner{a, b, c};
     std::sort(corner.begin(), corner.end());
     corners.push_back(corner);
   }
 
-  void tidy() { sort_unique(delaunay), sort_unique(candidates), sort_unique(corners), sort_unique(groups); }
+  void tidy() {
+    sort_unique(delaunay);
+    sort_unique(candidates);
+    sort_unique(corners);
+    sort_unique(groups);
+  }
 
  private:
   void add_group(const std::vector<std::pair<double, Index>>& near) {
@@ -67,10 +73,15 @@ class Listener {
     const Vec3 origin = samples_.block_center(block);
     collect(origin + Vec3{box.center[0], box.center[1], box.center[2]}, norm({box.half[0], box.half[1], box.half[2]}));
     const std::size_t count = found_.size();
-    x_.resize(count), y_.resize(count), z_.resize(count), squared_.resize(count);
+    x_.resize(count);
+    y_.resize(count);
+    z_.resize(count);
+    squared_.resize(count);
     for (std::size_t c = 0; c < count; ++c) {
       const Vec3 at = seeds_[found_[c].second] - origin;
-      x_[c] = at.x, y_[c] = at.y, z_[c] = at.z;
+      x_[c] = at.x;
+      y_[c] = at.y;
+      z_[c] = at.z;
     }
     for (Index i = block.begin; i < block.end; ++i) {
       const double least = measure({samples_.x[i], samples_.y[i], samples_.z[i]});
@@ -149,14 +160,17 @@ SeedGraph seed_graph(const SampleSet& samples, std::span<const Vec3> seeds, doub
   });
   Witness all;
   for (const Witness& w : witnesses) {
-    append(all.delaunay, w.delaunay), append(all.candidates, w.candidates);
-    append(all.corners, w.corners), append(all.groups, w.groups);
+    append(all.delaunay, w.delaunay);
+    append(all.candidates, w.candidates);
+    append(all.corners, w.corners);
+    append(all.groups, w.groups);
   }
   all.tidy();
   graph.delaunay = std::move(all.delaunay);
   std::set_difference(all.candidates.begin(), all.candidates.end(), graph.delaunay.begin(), graph.delaunay.end(),
                       std::back_inserter(graph.candidates));
-  graph.corners = std::move(all.corners), graph.groups = std::move(all.groups);
+  graph.corners = std::move(all.corners);
+  graph.groups = std::move(all.groups);
   return graph;
 }
 

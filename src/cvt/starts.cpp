@@ -107,7 +107,8 @@ std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, 
     const auto [weight, p] = queue.top();
     queue.pop();
     if (removed[p] || weight != crowding[p]) continue;
-    removed[p] = 1, --left;
+    removed[p] = 1;
+    --left;
     for (const auto& [q, w] : neighbours[p])
       if (!removed[q]) queue.push({crowding[q] -= w, q});
   }

@@ -75,11 +75,20 @@ void add_edge(const Mesh& mesh, std::uint32_t lower, const Side* begin, const Si
   const std::uint32_t upper = begin->upper;
   const auto count = end - begin;
   VertexState &a = topology.vertices[lower], &b = topology.vertices[upper];
-  ++topology.edges, ++a.valence, ++b.valence;
+  ++topology.edges;
+  ++a.valence;
+  ++b.valence;
   const double squared = squared_norm(mesh.vertices[upper] - mesh.vertices[lower]);
-  topology.length_sum += std::sqrt(squared), topology.length_squares += squared;
-  if (count == 1) ++topology.boundary, a.on_boundary = b.on_boundary = true;
-  if (count > 2) ++topology.non_manifold, a.on_non_manifold_edge = b.on_non_manifold_edge = true;
+  topology.length_sum += std::sqrt(squared);
+  topology.length_squares += squared;
+  if (count == 1) {
+    ++topology.boundary;
+    a.on_boundary = b.on_boundary = true;
+  }
+  if (count > 2) {
+    ++topology.non_manifold;
+    a.on_non_manifold_edge = b.on_non_manifold_edge = true;
+  }
   if (count == 2) {
     if (begin[0].ascending == begin[1].ascending) ++topology.inconsistent;
     for (const std::uint32_t v : {lower, upper})
