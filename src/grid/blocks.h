@@ -36,8 +36,12 @@ void keep_samples(SampleSet& set, const Keep& keep) {
           set.total_area -= set.area[i];
           continue;
         }
-        set.x[kept] = set.x[i], set.y[kept] = set.y[i], set.z[kept] = set.z[i], set.area[kept] = set.area[i];
-        set.normal[kept] = set.normal[i], set.edge[kept] = set.edge[i];
+        set.x[kept] = set.x[i];
+        set.y[kept] = set.y[i];
+        set.z[kept] = set.z[i];
+        set.area[kept] = set.area[i];
+        set.normal[kept] = set.normal[i];
+        set.edge[kept] = set.edge[i];
         if (!set.source.empty()) set.source[kept] = set.source[i];
         ++kept;
       }
@@ -47,7 +51,8 @@ void keep_samples(SampleSet& set, const Keep& keep) {
   }
   set.blocks = std::move(blocks);
   for (auto* array : {&set.x, &set.y, &set.z, &set.area}) array->resize(kept);
-  set.normal.resize(kept), set.edge.resize(kept);
+  set.normal.resize(kept);
+  set.edge.resize(kept);
   if (!set.source.empty()) set.source.resize(kept);
 }
 

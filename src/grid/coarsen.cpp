@@ -43,7 +43,9 @@ void copy_block(const SampleSet& fine, const SampleBlock& from, int axis, Sample
   for (std::uint32_t i = from.begin_of_axis(axis); i < from.end_of_axis(axis); ++i) {
     const EdgeCode code = fine.edge[i];
     if (!is_kept(code, axis)) continue;
-    coarse.x[out] = fine.x[i] + shift[0], coarse.y[out] = fine.y[i] + shift[1], coarse.z[out] = fine.z[i] + shift[2];
+    coarse.x[out] = fine.x[i] + shift[0];
+    coarse.y[out] = fine.y[i] + shift[1];
+    coarse.z[out] = fine.z[i] + shift[2];
     coarse.area[out] = 4.0f * fine.area[i];
     coarse.normal[out] = fine.normal[i];
     coarse.edge[out] = EdgeCode(code.axis(), first_cell[0] + code.i() / 2, first_cell[1] + code.j() / 2,
@@ -60,7 +62,8 @@ SampleSet coarsen(const SampleSet& fine, ExecutionContext& context) {
     SampleSet coarse;
     coarse.grid = {fine.grid.origin, 2 * fine.grid.spacing, fine.grid.size};
     for (std::uint32_t& n : coarse.grid.size) n = n / 2 + 1;
-    coarse.disagreements = fine.disagreements, coarse.unresolved = fine.unresolved;
+    coarse.disagreements = fine.disagreements;
+    coarse.unresolved = fine.unresolved;
     coarse.cut_by_bounds = fine.cut_by_bounds;
     const std::vector<CoarseBlock> groups = group_blocks(fine);
     std::vector<std::uint32_t> kept(groups.size());

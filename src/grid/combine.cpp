@@ -97,7 +97,9 @@ class Combiner {
 };
 
 void copy_sample(const SampleSet& from, std::uint32_t index, bool turned, SampleSet& to, std::uint32_t at) {
-  to.x[at] = from.x[index], to.y[at] = from.y[index], to.z[at] = from.z[index];
+  to.x[at] = from.x[index];
+  to.y[at] = from.y[index];
+  to.z[at] = from.z[index];
   to.area[at] = from.area[index];
   to.normal[at] = from.normal[index];
   to.edge[at] = from.edge[index];
@@ -121,7 +123,8 @@ SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, con
   });
   SampleSet set;
   set.grid = a.grid;
-  set.disagreements = a.disagreements + b.disagreements, set.unresolved = a.unresolved + b.unresolved;
+  set.disagreements = a.disagreements + b.disagreements;
+  set.unresolved = a.unresolved + b.unresolved;
   set.cut_by_bounds = a.cut_by_bounds || b.cut_by_bounds;
   std::vector<std::size_t> pair_of_block;
   std::uint32_t total = 0;

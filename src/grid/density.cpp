@@ -33,8 +33,11 @@ double weigh_by_density(SampleSet& samples, const Density& density, ExecutionCon
     }
   });
   Sums all;
-  for (const Sums& s : of_block)
-    all.wanted += s.wanted, all.weight += s.weight, all.largest = std::max(all.largest, s.largest);
+  for (const Sums& s : of_block) {
+    all.wanted += s.wanted;
+    all.weight += s.weight;
+    all.largest = std::max(all.largest, s.largest);
+  }
   const auto scale = static_cast<float>(samples.total_area / all.weight);
   parallel_for(context, samples.size(), 65536, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) samples.area[i] *= scale;

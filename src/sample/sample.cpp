@@ -46,7 +46,10 @@ SampleSet sample_boolean(const Compound& compound, const Grid& grid, ExecutionCo
 SampleSet sample_offset(const Compound& compound, const Grid& grid, const Box& bounds, ExecutionContext& context) {
   const Shape& operand = compound.operands[0];
   Box reach = bounds;
-  for (int i = 0; i < 3; ++i) reach.lo[i] -= std::abs(compound.distance), reach.hi[i] += std::abs(compound.distance);
+  for (int i = 0; i < 3; ++i) {
+    reach.lo[i] -= std::abs(compound.distance);
+    reach.hi[i] += std::abs(compound.distance);
+  }
   const Box box = operand.bounds.empty() ? reach : common(operand.bounds, reach);
   SampleSet none;
   none.grid = grid;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "grid/morton.h"
 
@@ -193,12 +194,19 @@ class Union {
         if (inside <= 0) continue;
         const double along = dot(p, step) / (h * h);
         const double exit = t - along + std::sqrt(along * along + inside / (h * h));
-        if (exit > farthest) farthest = exit, normal = normalized(from + exit * step - balls_[b].center);
+        if (exit > farthest) {
+          farthest = exit;
+          normal = normalized(from + exit * step - balls_[b].center);
+        }
       }
       if (farthest <= t) break;
-      t = farthest, moved = true;
+      t = farthest;
+      moved = true;
     }
-    if (t >= 1 || (old == none && !moved)) t = std::min(t, 0.999), normal = step / h;  // the border cuts the ball
+    if (t >= 1 || (old == none && !moved)) {  // the border cuts the ball
+      t = std::min(t, 0.999);
+      normal = step / h;
+    }
     const Vec3 p = from + t * step - center;
     const bool keep = old != none && !moved;
     out.x.push_back(keep ? samples_.x[old] : static_cast<float>(p.x));
@@ -214,7 +222,8 @@ class Union {
   SampleSet merge(const std::vector<NewBlock>& made) const {
     SampleSet out;
     out.grid = samples_.grid;
-    out.disagreements = samples_.disagreements, out.unresolved = samples_.unresolved,
+    out.disagreements = samples_.disagreements;
+    out.unresolved = samples_.unresolved;
     out.cut_by_bounds = samples_.cut_by_bounds;
     std::size_t next = 0;
     const auto append = [](auto& to, const auto& from, std::size_t begin, std::size_t end) {
@@ -235,9 +244,13 @@ class Union {
       out.blocks.push_back(block);
     };
     const auto copy = [&](const auto& from, std::size_t begin, std::size_t end) {
-      append(out.x, from.x, begin, end), append(out.y, from.y, begin, end), append(out.z, from.z, begin, end);
-      append(out.area, from.area, begin, end), append(out.normal, from.normal, begin, end);
-      append(out.edge, from.edge, begin, end), append(out.source, from.source, begin, end);
+      append(out.x, from.x, begin, end);
+      append(out.y, from.y, begin, end);
+      append(out.z, from.z, begin, end);
+      append(out.area, from.area, begin, end);
+      append(out.normal, from.normal, begin, end);
+      append(out.edge, from.edge, begin, end);
+      append(out.source, from.source, begin, end);
     };
     for (std::size_t b = 0; b <= keys_.size(); ++b) {
       const std::uint64_t key = b < keys_.size() ? keys_[b] : ~std::uint64_t{0};
@@ -269,25 +282,16 @@ SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, Exe
   return Union(samples, balls, context).result();
 }
 
-BallIndex::BallIndex(std::vector<Ball> balls, double largest_radius) : side_(largest_radius) {
-  for (const Ball& b : balls) side_ = std::max(side_, b.radius);
+BallIndex::BallIndex(std::vector<Ball> balls, double largest_radius)
+    : largest_(std::accumulate(balls.begin(), balls.end(), largest_radius,
+                               [](double largest, const Ball& b) { return std::max(largest, b.radius); })),
+      centers_(largest_) {
   for (const Ball& b : balls) add(b);
 }
 
 void BallIndex::add(const Ball& ball) {
-  const auto c = cell_of(ball.center);
-  cells_[key(c[0], c[1], c[2])].push_back(static_cast<std::uint32_t>(balls_.size()));
+  centers_.add(ball.center);
   balls_.push_back(ball);
-}
-
-std::array<std::int64_t, 3> BallIndex::cell_of(const Vec3& p) const {
-  return {static_cast<std::int64_t>(std::floor(p.x / side_)), static_cast<std::int64_t>(std::floor(p.y / side_)),
-          static_cast<std::int64_t>(std::floor(p.z / side_))};
-}
-
-std::int64_t BallIndex::key(std::int64_t i, std::int64_t j, std::int64_t k) {
-  constexpr std::int64_t mask = (1 << 21) - 1;
-  return (i & mask) << 42 | (j & mask) << 21 | (k & mask);
 }
 
 Vec3 BallIndex::outside(Vec3 p) const {
@@ -297,9 +301,12 @@ Vec3 BallIndex::outside(Vec3 p) const {
     near(p, 0, [&](std::uint32_t b) {
       const Vec3 d = p - balls_[b].center;
       const double length = norm(d), depth = balls_[b].radius - length;
-      if (depth > deepest && length > 0) deepest = depth, out = balls_[b].center + d * (balls_[b].radius / length);
+      if (depth > deepest && length > 0) {
+        deepest = depth;
+        out = balls_[b].center + d * (balls_[b].radius / length);
+      }
     });
-    if (deepest <= 1e-9 * side_) return p;
+    if (deepest <= 1e-9 * largest_) return p;
     p = out;
   }
   return p;
