@@ -7,31 +7,15 @@
 #include <vector>
 
 #include "command.h"
-#include "evenmesh/solid.h"
+#include "evenmesh/set_operation.h"
 #include "meshing.h"
 #include "values.h"
 
 namespace evenmesh::cli {
 namespace {
 
-enum class Set { unite, intersect, subtract };
-
-Shape combined(Set set, std::vector<Shape> shapes) {
-  switch (set) {
-    case Set::unite:
-      return unite(std::move(shapes));
-    case Set::intersect:
-      return intersect(std::move(shapes));
-    case Set::subtract:
-      break;
-  }
-  Shape first = std::move(shapes.at(0));
-  shapes.erase(shapes.begin());
-  return subtract(std::move(first), std::move(shapes));
-}
-
 int run_boolean(const MeshingArguments& arguments, const std::string& name) {
-  const auto set = static_cast<Set>(choice("boolean", name, {"union", "intersection", "difference"}));
+  const auto set = choice<SetOperation>("boolean", name);
   const Operation operation{.inputs = {2, std::numeric_limits<std::size_t>::max()},
                             .combine = [set](std::vector<Shape> shapes) { return combined(set, std::move(shapes)); },
                             .options = {{"operation", name}}};

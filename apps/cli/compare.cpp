@@ -18,7 +18,9 @@ namespace evenmesh::cli {
 namespace {
 
 struct CompareArguments {
-  std::string a, b, samples = "500000", threads = "0";
+  std::string a, b;
+  std::string samples = "500000";
+  std::string threads = "0";
   bool json = false;
 };
 
@@ -35,7 +37,8 @@ std::string crease_line(const MeshDistance& d) {
 
 std::string text(const MeshDistance& d) {
   const auto row = [&](const char* name, double there, double back) {
-    const double both = std::max(there, back), diagonal = d.reference_diagonal;
+    const double both = std::max(there, back);
+    const double diagonal = d.reference_diagonal;
     return fmt::format("  {:<12} {:>12.6g} {:>12.6g} {:>12.6g} {:>11.4f} %\n", name, there, back, both,
                        diagonal > 0 ? 100 * both / diagonal : 0.0);
   };

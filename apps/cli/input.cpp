@@ -3,138 +3,53 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <filesystem>
-#include <fstream>
-#include <system_error>
+#include <string_view>
 #include <utility>
 
-#include "evenmesh/glsl.h"
 #include "evenmesh/io.h"
-#include "evenmesh/scene.h"
 #include "values.h"
 
 namespace evenmesh::cli {
 namespace {
 
-constexpr std::string_view gallery_prefix = "gallery:";
-
-struct PlannedKind {
-  std::string_view extension, what;
-};
-constexpr std::array planned_kinds{
-    PlannedKind{".vdb", "reading an OpenVDB volume"},
-    PlannedKind{".nii", "reading a NIfTI volume"},
-    PlannedKind{".nii.gz", "reading a NIfTI volume"},
-    PlannedKind{".nrrd", "reading an NRRD volume"},
-};
-
-bool ends_with_ignoring_case(std::string_view text, std::string_view ending) {
-  return text.size() >= ending.size() && std::equal(ending.rbegin(), ending.rend(), text.rbegin(), [](char a, char b) {
-           return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b);
-         });
+/// What a name that is no mesh file stands for; empty where it is none, or where reading it will tell.
+std::string other_than_mesh(InputKind kind, const std::string& name) {
+  switch (kind) {
+    case InputKind::scene:
+      return name + " is a scene";
+    case InputKind::shader:
+      return name + " is a shader";
+    case InputKind::dexels:
+      return name + " holds dexels";
+    default:
+      return "";
+  }
 }
 
-/// The first bytes of a file, empty where there is none: whoever reads it says what is wrong with it.
-std::string head_of(const std::string& name) {
-  std::error_code unknown;
-  if (name == "-" || !std::filesystem::is_regular_file(name, unknown)) return "";
-  std::ifstream file(name, std::ios::binary);
-  std::string head(4096, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  return head;
-}
-
-bool names_a_scene(const std::string& name) {
-  return is_scene(name, head_of(name));
-}
-
-bool names_a_shader(const std::string& name) {
-  return !name.starts_with(gallery_prefix) && is_glsl(name, head_of(name));
-}
-
-/// Refuses inputs that are documented but not built yet, unless the file holds a mesh under a misleading name.
-void refuse_planned_kinds(const std::string& name) {
-  const auto kind = std::find_if(planned_kinds.begin(), planned_kinds.end(),
-                                 [&](const PlannedKind& k) { return ends_with_ignoring_case(name, k.extension); });
-  if (kind == planned_kinds.end()) return;
-  const std::string head = head_of(name);
-  if (!head.empty() && !format_of_content(head)) not_available(fmt::format("{} ({})", kind->what, name));
-}
-
-bool names_dexels(const std::string& name) {
-  const std::string head = head_of(name);
-  return is_dexel_file(head) || (ends_with_ignoring_case(name, ".tdx") && !format_of_content(head));
-}
-
-/// Refuses what names no file, or a file that cannot be read yet.
+/// Refuses what names no mesh file.
 void check_file(const std::string& command, const std::string& name) {
-  if (name.starts_with(gallery_prefix)) {
+  const InputKind kind = kind_of_input(name);
+  if (kind == InputKind::built_in) {
     throw InvalidInput(fmt::format("{} takes a mesh file; make one first: evenmesh mesh {} -o {}.ply", command, name,
-                                   name.substr(gallery_prefix.size())));
+                                   name.substr(name.find(':') + 1)));
   }
-  if (names_a_scene(name)) {
-    throw InvalidInput(
-        fmt::format("{} takes a mesh file, {} is a scene; make a mesh of it first: evenmesh mesh {} -o x.ply", command,
-                    name, name));
+  if (const std::string what = other_than_mesh(kind, name); !what.empty()) {
+    throw InvalidInput(fmt::format("{} takes a mesh file, {}; make a mesh of it first: evenmesh mesh {} -o x.ply",
+                                   command, what, name));
   }
-  if (names_a_shader(name)) {
-    throw InvalidInput(
-        fmt::format("{} takes a mesh file, {} is a shader; make a mesh of it first: evenmesh mesh {} -o x.ply", command,
-                    name, name));
-  }
-  if (names_dexels(name)) {
-    throw InvalidInput(
-        fmt::format("{} takes a mesh file, {} holds dexels; make a mesh of it first: evenmesh mesh {} -o x.ply",
-                    command, name, name));
-  }
-  refuse_planned_kinds(name);
+  if (kind == InputKind::volume) read_shape(name);  // says that it is not available
 }
 
-GlslOptions shader_options(const InputArguments& input, const Box& bounds) {
-  return {.entry = input.entry,
-          .definitions = input.definitions,
-          .lipschitz = input.lipschitz,
-          .level = input.level,
-          .bounds = bounds,
-          .device = input.gl_device};
-}
-
-Shape shape_of(std::variant<Mesh, PointCloud> contents, const std::string& title) {
-  if (auto* points = std::get_if<PointCloud>(&contents)) return shape_from_points(std::move(*points), title);
-  return shape_from_mesh(std::get<Mesh>(std::move(contents)), title);
-}
-
-/// Recognized by content alone; relative paths in a scene start from the working folder.
-Shape read_standard_input(const GlslOptions& shader, ExecutionContext& context) {
-  const std::string bytes = read_bytes("-"), title = "standard input";
-  if (is_dexel_file(bytes)) return shape_from_dexels(parse_dexels(bytes, title), title);
-  const std::string_view head = std::string_view(bytes).substr(0, 4096);
-  if (is_scene("-", head)) return parse_scene(bytes, title, {}, context);
-  if (is_glsl("-", head)) return shape_from_glsl(bytes, shader, title);
-  return shape_of(parse_mesh_or_points(bytes, title, context), title);
-}
-
-Shape read_one(const std::string& name, const GlslOptions& shader, ExecutionContext& context) {
-  if (name.starts_with(gallery_prefix)) return gallery_shape(name.substr(gallery_prefix.size()));
-  if (name == "-") return read_standard_input(shader, context);
-  if (names_a_shader(name)) return read_glsl(name, shader);
-  if (names_a_scene(name)) return read_scene(name, context);
-  if (names_dexels(name)) return shape_from_dexels(read_dexels(name, context), name);
-  refuse_planned_kinds(name);
-  return shape_of(read_mesh_or_points(name, context), name);
+/// Whether options of shaders were given.
+bool has_shader_options(const InputOptions& options) {
+  return options.entry != InputOptions{}.entry || options.lipschitz || options.level != 0;
 }
 
 /// What shaders draw, with the mesh that is the only input, or without.
-Shape read_drawing(const InputArguments& input, const Box& bounds, ExecutionContext& context) {
-  RasterOptions options{.vertex_count = input.raster_vertices,
-                        .bounds = bounds,
-                        .definitions = input.definitions,
-                        .device = input.gl_device};
-  if (!input.positional.empty()) options.geometry = read_mesh_file("mesh --raster", input.positional[0], context);
-  const auto path = [](const std::string& name) { return name == "default" ? "" : name; };
-  return read_raster(path(input.raster[0]), path(input.raster[1]), std::move(options), "raster");
+Shape read_drawing(const InputArguments& input, ExecutionContext& context) {
+  Drawing drawing{.vertex = input.raster[0], .fragment = input.raster[1], .vertex_count = input.raster_vertices};
+  if (!input.positional.empty()) drawing.geometry = read_mesh_file("mesh --raster", input.positional[0], context);
+  return evenmesh::read_drawing(std::move(drawing), input.options);
 }
 
 /// Of --raster, which may have one mesh to draw.
@@ -173,7 +88,7 @@ void check_input(const InputArguments& input, const InputCount& count) {
     throw InvalidInput("--raster-vertices is for --raster; give both or neither");
   }
   if (!input.raster.empty() && count.least <= 1) {
-    if (input.entry != InputArguments{}.entry || input.lipschitz || input.level != 0)
+    if (has_shader_options(input.options))
       throw InvalidInput("--entry, --lipschitz and --level are for functions in GLSL; --raster draws");
     return;
   }
@@ -195,30 +110,30 @@ void check_input(const InputArguments& input, const InputCount& count) {
   if (std::count(input.positional.begin(), input.positional.end(), "-") > 1) {
     throw InvalidInput("only one of the inputs can come from standard input");
   }
-  const bool shader = std::any_of(input.positional.begin(), input.positional.end(), names_a_shader);
-  if (input.expressions.empty() && !shader && !input.definitions.empty()) {
+  const bool shader = std::any_of(input.positional.begin(), input.positional.end(),
+                                  [](const std::string& name) { return kind_of_input(name) == InputKind::shader; });
+  if (input.expressions.empty() && !shader && !input.options.definitions.empty()) {
     throw InvalidInput(
         "-D gives a parameter of an expression or a shader; it needs an expression after -e, or a .glsl file");
   }
-  if (!shader && (input.entry != InputArguments{}.entry || input.lipschitz || input.level != 0)) {
+  if (!shader && has_shader_options(input.options)) {
     throw InvalidInput("--entry, --lipschitz and --level are for shaders; no input is a .glsl file");
   }
 }
 
-std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, ExecutionContext& context) {
-  if (!input.raster.empty()) return {read_drawing(input, bounds, context)};
+std::vector<Shape> read_shapes(const InputArguments& input, ExecutionContext& context) {
+  if (!input.raster.empty()) return {read_drawing(input, context)};
   std::vector<Shape> shapes;
-  for (const std::string& name : input.positional)
-    shapes.push_back(read_one(name, shader_options(input, bounds), context));
-  for (const std::string& expression : input.expressions) {
-    shapes.push_back(shape_from_expression(expression, parameters_of(input), bounds));
-  }
+  for (const std::string& name : input.positional) shapes.push_back(read_shape(name, input.options, context));
+  for (const std::string& expression : input.expressions)
+    shapes.push_back(shape_from_expression(expression, parameters_of(input), input.options.bounds));
   return shapes;
 }
 
 std::map<std::string, double> parameters_of(const InputArguments& input) {
   std::map<std::string, double> parameters;
-  for (const auto& [name, text] : input.definitions) parameters[name] = real_number(fmt::format("-D {}=", name), text);
+  for (const auto& [name, text] : input.options.definitions)
+    parameters[name] = real_number(fmt::format("-D {}=", name), text);
   return parameters;
 }
 

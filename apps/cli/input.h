@@ -3,12 +3,12 @@
 
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "evenmesh/execution_context.h"
+#include "evenmesh/input.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/points.h"
 #include "evenmesh/shape.h"
@@ -17,20 +17,17 @@ namespace evenmesh::cli {
 
 /// Everything that may name an input on a command line.
 struct InputArguments {
-  std::vector<std::string> positional;             ///< file, "-", or "gallery:NAME"
-  std::vector<std::string> expressions;            ///< -e
-  std::map<std::string, std::string> definitions;  ///< -D
-  std::string entry = "map";                       ///< --entry, of GLSL files, as all below
-  std::optional<double> lipschitz;                 ///< --lipschitz
-  double level = 0;                                ///< --level
-  std::string gl_device;                           ///< --gl-device
-  std::vector<std::string> raster;                 ///< --raster: vertex and fragment shader, files or "default"
-  std::size_t raster_vertices = 0;                 ///< --raster-vertices
+  std::vector<std::string> positional;   ///< file, "-", or "gallery:NAME"
+  std::vector<std::string> expressions;  ///< -e
+  InputOptions options;                  ///< --entry, --lipschitz, --level, --gl-device, --bounds, and -D
+  std::vector<std::string> raster;       ///< --raster: vertex and fragment shader, files or "default"
+  std::size_t raster_vertices = 0;       ///< --raster-vertices
 };
 
 /// How many inputs a command takes.
 struct InputCount {
-  std::size_t least = 1, most = 1;
+  std::size_t least = 1;
+  std::size_t most = 1;
 };
 
 /// @throws InvalidInput  too few inputs, too many, or options of expressions and shaders without one
@@ -40,11 +37,10 @@ void check_input(const InputArguments& input, const InputCount& count = {});
 std::map<std::string, double> parameters_of(const InputArguments& input);
 
 /// The shapes that the checked arguments name: files and built-in shapes first, then expressions.
-/// @param bounds  of expressions and shaders, empty: to be found
 /// @throws InvalidInput   an expression or name that is wrong
 /// @throws NotAvailable   an input kind that this version does not contain
 /// @throws UnusableInput  a file that cannot be read
-std::vector<Shape> read_shapes(const InputArguments& input, const Box& bounds, ExecutionContext& context);
+std::vector<Shape> read_shapes(const InputArguments& input, ExecutionContext& context);
 
 /// A mesh file, or standard input for "-". Throws like read_shapes.
 Mesh read_mesh_file(const std::string& command, const std::string& name, ExecutionContext& context);

@@ -29,7 +29,8 @@ void add_mesh_command(CLI::App& app, Action& action) {
 
 void add_wrap_command(CLI::App& app, Action& action) {
   const auto a = std::make_shared<MeshingArguments>();
-  a->wrap = true, a->method = "shell";
+  a->wrap = true;
+  a->method = "shell";
   CLI::App* command = app.add_subcommand("wrap", "closed mesh around anything: sheets, soups, points");
   command->footer(
       "The outer side of a shell of voxels: one voxel outside of the input; holes and gaps narrower than\ntwice "

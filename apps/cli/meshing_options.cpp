@@ -1,3 +1,4 @@
+#include "evenmesh/names.h"
 #include "meshing.h"
 
 namespace evenmesh::cli {
@@ -5,12 +6,12 @@ namespace {
 
 void add_what(CLI::App& app, MeshingArguments& a) {
   const std::string group = "What comes out";
-  const auto option = [&](const char* name, std::string& text, const char* type, const char* description) {
+  const auto option = [&](const char* name, std::string& text, const char* type, const std::string& description) {
     app.add_option(name, text, description)->type_name(type)->group(group);
   };
   option("-o,--output", a.output, "FILE", "mesh to write: .ply .obj .stl .off .glb .3mf, or - for standard output");
   option("--format", a.format, "FORMAT",
-         "format of the output, ply|obj|stl|off|glb|3mf; default: by extension, ply for -");
+         "format of the output, " + joined_names<MeshFormat>("|") + "; default: by extension, ply for -");
   option(
       "-n,--vertices", a.vertices, "N",
       "number of vertices, 4 to 1000000000, met within 0.5 % unless the\ntopology needs more; default: estimated from "
@@ -41,21 +42,22 @@ void add_what(CLI::App& app, MeshingArguments& a) {
 
 void add_effort(CLI::App& app, MeshingArguments& a) {
   const std::string group = "Optimization";
-  const auto option = [&](const char* name, std::string& text, const char* type, const char* description) {
+  const auto option = [&](const char* name, std::string& text, const char* type, const std::string& description) {
     app.add_option(name, text, description)->type_name(type)->group(group);
   };
   option("--quality", a.quality, "EFFORT",
-         "fast|normal|high (high anneals: more regular, several times slower);\ndefault normal");
+         joined_names<Quality>("|") + " (high anneals: more regular, several times slower);\ndefault normal");
   option("--method", a.method, "METHOD",
-         "sampling: auto|raster|shell; auto takes the shell for points and for\nopen or broken sheets; default auto");
-  option("--optimizer", a.optimizer, "NAME", "lbfgs|lloyd; default lbfgs");
+         "sampling: " + joined_names<Method>("|") +
+             "; auto takes the shell for points and for\nopen or broken sheets; default auto");
+  option("--optimizer", a.optimizer, "NAME", joined_names<Optimizer>("|") + "; default lbfgs");
   option("--iterations", a.iterations, "N",
          "evaluations of the energy per level at most, 0 to 10000;\ndefault: by --quality");
   option("--tolerance", a.tolerance, "T",
          "stop when the mean vertex moves less than this share of an edge,\nabove 0, below 1; default 0.0001");
-  option("--start", a.start, "NAME", "random|blue-noise|coarse-to-fine; default coarse-to-fine");
+  option("--start", a.start, "NAME", joined_names<Start>("|") + "; default coarse-to-fine");
   option("--seed", a.seed, "S", "of the random numbers, 0 to 18446744073709551615; default 1");
-  option("--placement", a.placement, "NAME", "of the vertices: centroid|constrained|quadric; default quadric");
+  option("--placement", a.placement, "NAME", "of the vertices: " + joined_names<Placement>("|") + "; default quadric");
   option(
       "--connect", a.connect, "NAME",
       "cells to triangles: complex (by the nearest vertex), flood (by the first\nalong the surface), fragments (from "
@@ -73,7 +75,7 @@ void add_effort(CLI::App& app, MeshingArguments& a) {
 
 void add_how(CLI::App& app, MeshingArguments& a) {
   const std::string group = "How it runs (the mesh does not depend on it)";
-  const auto option = [&](const char* name, std::string& text, const char* type, const char* description) {
+  const auto option = [&](const char* name, std::string& text, const char* type, const std::string& description) {
     app.add_option(name, text, description)->type_name(type)->group(group);
   };
   option("-j,--threads", a.threads, "N", "number of threads, 0 to 1024; default 0 = one per processor");
@@ -104,7 +106,7 @@ void add_input_options(CLI::App& app, MeshingArguments& a, const std::string& wh
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false)
       ->group(group);
-  const auto option = [&](const char* name, std::string& text, const char* type, const char* description) {
+  const auto option = [&](const char* name, std::string& text, const char* type, const std::string& description) {
     app.add_option(name, text, description)->type_name(type)->group(group);
   };
   option("--entry", a.entry, "NAME", "shader: the function of a vec3 that is negative inside; default map");

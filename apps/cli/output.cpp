@@ -1,18 +1,21 @@
 #include "output.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
 
 #include "command.h"
+#include "evenmesh/names.h"
 #include "values.h"
 
 namespace evenmesh::cli {
 namespace {
 
-constexpr const char* known_formats = "ply, obj, stl, off, glb, 3mf";
+const std::string& known_formats() {
+  static const std::string all = joined_names<MeshFormat>();
+  return all;
+}
 
 }  // namespace
 
@@ -30,7 +33,7 @@ void check_output(const std::string& option, const std::string& path) {
   }
   const bool special = std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored);
   // A regular file appears by renaming, so its folder must be writable; a device is written to itself.
-  if (access((special ? file : folder).c_str(), W_OK) != 0) {
+  if (!is_writable(special ? file : folder)) {
     throw InvalidInput(fmt::format("{} {}: '{}' must not be written to; choose another place", option, path,
                                    special ? path : folder.string()));
   }
@@ -41,14 +44,14 @@ MeshOutput check_mesh_output(const std::string& path, const std::string& format)
   MeshOutput output{.path = path};
   if (!format.empty()) {
     const auto known = format_of_name("mesh." + format);
-    if (!known) throw InvalidInput(fmt::format("--format takes one of {}, not '{}'", known_formats, format));
+    if (!known) throw InvalidInput(fmt::format("--format takes one of {}, not '{}'", known_formats(), format));
     output.format = *known;
   } else if (path != "-") {
     const auto known = format_of_name(path);
     const bool special = std::filesystem::exists(path) && !std::filesystem::is_regular_file(path);
     if (!known && !special) {
       throw InvalidInput(
-          fmt::format("-o {}: the extension does not say a format; use one of {}, or --format", path, known_formats));
+          fmt::format("-o {}: the extension does not say a format; use one of {}, or --format", path, known_formats()));
     }
     output.format = known.value_or(MeshFormat::ply);
   }

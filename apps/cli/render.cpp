@@ -16,8 +16,14 @@ namespace evenmesh::cli {
 namespace {
 
 struct RenderArguments {
-  std::string mesh, other, output, width = "1200", height = "900", view = "30,20", up = "y", wireframe = "on";
-  std::string antialias = "3", threads = "0";
+  std::string mesh, other, output;
+  std::string width = "1200";
+  std::string height = "900";
+  std::string view = "30,20";
+  std::string up = "y";
+  std::string wireframe = "on";
+  std::string antialias = "3";
+  std::string threads = "0";
   bool quality = false;
 };
 

@@ -7,8 +7,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "evenmesh/error.h"
-
 namespace evenmesh::cli {
 namespace {
 
@@ -92,11 +90,9 @@ std::pair<std::string, std::string> definition(const std::string& option, const 
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-std::size_t choice(const std::string& option, const std::string& text, const std::vector<std::string>& allowed,
-                   const std::vector<std::string>& planned) {
+std::size_t choice(const std::string& option, const std::string& text, const std::vector<std::string>& allowed) {
   const auto found = std::find(allowed.begin(), allowed.end(), text);
   if (found != allowed.end()) return static_cast<std::size_t>(found - allowed.begin());
-  if (std::find(planned.begin(), planned.end(), text) != planned.end()) not_available(option + " " + text);
   throw InvalidInput(fmt::format("{} takes one of {}, not '{}'", option, fmt::join(allowed, ", "), text));
 }
 

@@ -92,6 +92,9 @@ std::string serialize_vdb(const SparseVolume& volume);
 /// @throws UnusableInput  one sentence with the file's name: it does not exist, is a directory, may not be read, …
 std::string read_bytes(const std::filesystem::path& path);
 
+/// Whether this process may write to a file or device, or into a folder. What is not there, it may not.
+bool is_writable(const std::filesystem::path& path) noexcept;
+
 /// Writes any text or binary file atomically: temporary name beside it, then rename.
 /// @throws UnusableInput  the file cannot be written
 void write_file(const std::filesystem::path& path, std::string_view bytes);

@@ -36,7 +36,7 @@ Image beside(const std::vector<Image>& images);
 std::string encode_png(const Image& image);
 
 /// One self-contained HTML page: pictures, histograms of angles and of Q, energy per evaluation, time per stage,
-/// notices; a cut through the shell where one was kept (Artifacts::shell_cut).
+/// findings; a cut through the shell where one was kept (Artifacts::shell_cut).
 std::string report_html(const MeshResult& result, const std::string& title,
                         ExecutionContext& context = ExecutionContext::silent(), const Artifacts& kept = {});
 

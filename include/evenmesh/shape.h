@@ -88,6 +88,14 @@ using Density = std::function<double(const Vec3&)>;
 /// @throws InvalidInput  with the column (1-based) and a caret under it
 Density density_from_expression(std::string_view expression, const std::map<std::string, double>& parameters = {});
 
+/// What density_from_expression() made a density of; none of any other function.
+struct DensityExpression {
+  std::string expression;
+  std::map<std::string, double> parameters{};
+  friend bool operator==(const DensityExpression&, const DensityExpression&) = default;
+};
+std::optional<DensityExpression> expression_of(const Density& density);
+
 /// A box. @throws InvalidInput if it is empty
 Shape shape_from_box(const Box& box, std::string name = "box");
 

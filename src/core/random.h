@@ -25,7 +25,8 @@ class Random {
   }
   /// Standard normal (Box–Muller).
   double gaussian() {
-    const double u = 1.0 - uniform(), v = uniform();
+    const double u = 1.0 - uniform();
+    const double v = uniform();
     return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v);
   }
 

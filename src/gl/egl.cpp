@@ -1,6 +1,5 @@
 #include "gl/egl.h"
 
-#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/platform.h"
 #include "evenmesh/error.h"
 
 namespace evenmesh::gl {
@@ -38,10 +38,8 @@ bool has_word(const char* words, std::string_view word) {
 
 /// epoxy ends the program where a library is missing; so it is looked for first.
 void require_libraries() {
-  const auto there = [](const char* name) {
-    void* library = dlopen(name, RTLD_LAZY | RTLD_LOCAL);
-    return library != nullptr;  // kept open: epoxy opens it again
-  };
+  std::string ignored;
+  const auto there = [&](const char* name) { return load_library(name, ignored) != nullptr; };
   if (!there("libEGL.so.1")) throw UnusableInput(fmt::format("there is no OpenGL here (no libEGL.so.1); {}", advice));
   if (!there("libOpenGL.so.0") && !there("libGL.so.1"))
     throw UnusableInput(fmt::format("there is no OpenGL here (no libGL.so.1); {}", advice));

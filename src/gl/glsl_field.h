@@ -47,8 +47,8 @@ class GlslField final : public Field {
   double epsilon() const override { return scale_ / 1024; }
   std::size_t batch_size() const override { return 262'144; }
 
-  /// Values that were not finite so far, those moved for gradients included.
-  std::size_t non_finite() const override { return non_finite_; }
+  /// Counts those moved for gradients, too.
+  const std::atomic<std::size_t>* non_finite_counter() const override { return &non_finite_; }
 
  private:
   void run(const PointBatch& points, std::span<const std::span<float>> values) const;

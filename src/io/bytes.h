@@ -1,20 +1,12 @@
 #pragma once
 /// Whole files in memory.
 
-#include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <string>
-#include <string_view>
+
+#include "core/platform.h"
 
 namespace evenmesh {
-
-/// Bytes that are not zeroed before they are read into.
-struct FileBytes {
-  std::unique_ptr<char[]> data;
-  std::size_t size = 0;
-  std::string_view view() const { return {data.get(), size}; }
-};
 
 /// Reads a whole file, pipe or device; "-" is standard input.
 ///

@@ -1,11 +1,12 @@
 /// OpenVDB volumes, out: loads the plugin that writes them.
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <array>
 #include <filesystem>
+#include <system_error>
 
+#include "core/platform.h"
 #include "evenmesh/error.h"
 #include "evenmesh/io.h"
 #include "io/vdb/plugin.h"
@@ -17,15 +18,17 @@ namespace fs = std::filesystem;
 
 /// Beside the program, where it was installed to, and where the program was moved to with all of it.
 void* open_plugin() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  std::error_code unknown;
+  const fs::path program = program_folder();
   const std::array<fs::path, 3> folders{program, program.parent_path() / "lib" / "evenmesh", EVENMESH_PLUGINS};
-  for (const fs::path& folder : folders)
-    if (const fs::path file = folder / vdb::plugin_name; fs::exists(file, error))
-      if (void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) return handle;
-  const char* reason = dlerror();
+  std::string reason = "no such file";
+  for (const fs::path& folder : folders) {
+    const fs::path file = folder / vdb::plugin_name;
+    if (!fs::exists(file, unknown)) continue;
+    if (void* plugin = load_library(file, reason)) return plugin;
+  }
   throw UnusableInput(fmt::format("OpenVDB files need {}, which is not beside the program, or libopenvdb ({})",
-                                  vdb::plugin_name, reason != nullptr ? reason : "no such file"));
+                                  vdb::plugin_name, reason));
 }
 
 }  // namespace
@@ -34,7 +37,7 @@ std::string serialize_vdb(const SparseVolume& volume) {
   if (!(volume.side > 0)) throw InvalidInput("the voxels of a volume need a side above 0");
   if (volume.values.size() != volume.voxels.size()) throw InvalidInput("a volume needs one value for each voxel");
   static void* const plugin = open_plugin();
-  const auto serialize = reinterpret_cast<vdb::Serialize*>(dlsym(plugin, vdb::serialize_name));
+  const auto serialize = reinterpret_cast<vdb::Serialize*>(find_symbol(plugin, vdb::serialize_name));
   std::string bytes;
   if (serialize == nullptr || !serialize(volume, bytes))
     throw UnusableInput("the volume cannot be written: " + (bytes.empty() ? "another version's plugin" : bytes));

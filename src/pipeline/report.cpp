@@ -1,10 +1,11 @@
 #include "pipeline/report.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <cmath>
 #include <numeric>
+
+#include "core/platform.h"
 
 namespace evenmesh {
 namespace {
@@ -108,12 +109,6 @@ class Judge {
   const MeshQuality& quality_;
   std::vector<Finding> findings_;
 };
-
-std::size_t peak_memory_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
 
 }  // namespace
 

@@ -82,14 +82,14 @@ class SolidSampling {
   Sampling result_;
 };
 
-void add_findings(const Sampler& sampler, std::size_t non_finite, Sampling& sampling) {
+void add_findings(const Sampler& sampler, Sampling& sampling) {
   const SampleSet& samples = sampling.samples;
   const auto say = [&](FindingCode code, std::vector<std::pair<std::string, FindingValue>> values = {}) {
     sampling.findings.push_back(make_finding(code, std::move(values)));
   };
   if (samples.disagreements > 0)
     say(FindingCode::inside_by_vote, {{"count", static_cast<double>(samples.disagreements)}});
-  if (non_finite > 0)
+  if (const std::size_t non_finite = sampler.non_finite(); non_finite > 0)
     say(FindingCode::not_finite, {{"name", sampler.name()}, {"count", static_cast<double>(non_finite)}});
   if (samples.cut_by_bounds && !sampler.capped_by_bounds()) say(FindingCode::closed_by_bounds);
   const double all = static_cast<double>(samples.size() + samples.unresolved);
@@ -104,9 +104,8 @@ void add_findings(const Sampler& sampler, std::size_t non_finite, Sampling& samp
 
 Sampling sample_solid(const Sampler& sampler, Plan plan, const MeshOptions& options, StageTimer& timer,
                       ExecutionContext& context) {
-  const std::size_t before = sampler.non_finite();
   Sampling sampling = SolidSampling(sampler, std::move(plan), options, timer, context).result();
-  add_findings(sampler, sampler.non_finite() - before, sampling);
+  add_findings(sampler, sampling);
   return sampling;
 }
 

@@ -71,7 +71,6 @@ class FieldSampler final : public Sampler {
   void step_onto(std::span<Vec3> points, double limit) const override {
     if (expensive()) evenmesh::step_onto(points, field(), bounds(), limit);
   }
-  std::size_t non_finite() const override { return field().non_finite(); }
 
  private:
   const Field& field() const { return *shape_.field(); }
@@ -114,16 +113,6 @@ class CompoundSampler final : public Sampler {
   }
   std::unique_ptr<Projector> projector(const SampleSet& samples, ExecutionContext&) const override {
     return make_projector(samples);
-  }
-  std::size_t non_finite() const override { return non_finite_of(shape_); }
-
- private:
-  static std::size_t non_finite_of(const Shape& shape) {
-    std::size_t count = 0;
-    if (const Field* field = shape.field()) count = field->non_finite();
-    if (const Compound* compound = shape.compound())
-      for (const Shape& operand : compound->operands) count += non_finite_of(operand);
-    return count;
   }
 };
 

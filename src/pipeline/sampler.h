@@ -11,6 +11,7 @@
 #include "grid/sample_set.h"
 #include "pipeline/stage_timer.h"
 #include "sample/projector.h"
+#include "shape/non_finite.h"
 
 namespace evenmesh {
 
@@ -26,7 +27,7 @@ struct VoxelPlan {
 /// Callable from one thread at a time; uses several itself.
 class Sampler {
  public:
-  explicit Sampler(Shape shape) : shape_(std::move(shape)) {}
+  explicit Sampler(Shape shape) : shape_(std::move(shape)), non_finite_(shape_) {}
   virtual ~Sampler() = default;
   Sampler(const Sampler&) = delete;
   Sampler& operator=(const Sampler&) = delete;
@@ -56,11 +57,14 @@ class Sampler {
   /// @param limit  no point moves farther, model units
   virtual void step_onto(std::span<Vec3>, double) const {}
 
-  /// Evaluations so far that gave no finite number, over the life of the shape.
-  virtual std::size_t non_finite() const { return 0; }
+  /// Evaluations that gave no finite number, since the sampler was made.
+  std::size_t non_finite() const { return non_finite_.count(); }
 
  protected:
   Shape shape_;
+
+ private:
+  NonFiniteValues non_finite_;
 };
 
 /// The only place that asks what kind a shape is. Finds bounds where there are none, and cuts the shape by those given.

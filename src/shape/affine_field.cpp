@@ -38,7 +38,7 @@ class AffineField final : public Field {
     field_->enclose(moved, ranges);
   }
   std::size_t batch_size() const override { return field_->batch_size(); }
-  std::size_t non_finite() const override { return field_->non_finite(); }
+  const std::atomic<std::size_t>* non_finite_counter() const override { return field_->non_finite_counter(); }
   bool differentiates() const override { return field_->differentiates(); }
   bool encloses_surely() const override { return field_->encloses_surely(); }
   double evaluate(const Vec3& point, Vec3* g) const override {
@@ -122,7 +122,7 @@ class BoxedField final : public Field {
     for (std::size_t i = 0; i < boxes.size(); ++i) ranges[i] = within_walls(ranges[i], boxes[i]);
   }
   std::size_t batch_size() const override { return field_->batch_size(); }
-  std::size_t non_finite() const override { return field_->non_finite(); }
+  const std::atomic<std::size_t>* non_finite_counter() const override { return field_->non_finite_counter(); }
   bool differentiates() const override { return field_->differentiates(); }
   bool encloses_surely() const override { return field_->encloses_surely(); }
   double evaluate(const Vec3& point, Vec3* gradient) const override {

@@ -1,6 +1,7 @@
 #pragma once
 /// Scalar fields: implicit surfaces f = 0, inside where f < 0.
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -37,8 +38,14 @@ class Field {
   virtual Interval evaluate(const Box& box) const;
   /// Encloses f over each of several boxes. The default asks for one after the other.
   virtual void enclose(std::span<const Box> boxes, std::span<Interval> ranges) const;
-  /// Values so far that were not finite: outside.
-  virtual std::size_t non_finite() const { return 0; }
+  /// Where this field counts its values that were not finite, and so outside; null where it does not count. The count
+  /// only grows; fields made of another one share its counter. See NonFiniteValues for those of one computation.
+  virtual const std::atomic<std::size_t>* non_finite_counter() const { return nullptr; }
+  /// Values that were not finite since the field was made.
+  std::size_t non_finite() const {
+    const std::atomic<std::size_t>* counter = non_finite_counter();
+    return counter ? counter->load() : 0;
+  }
   /// False where a gradient is made of seven values; true where it costs little more than one.
   virtual bool differentiates() const { return true; }
   /// False where the enclosures are somebody's word: then the surface is followed to where they deny it.

@@ -59,6 +59,13 @@ class Indicator final : public Field {
   std::function<bool(const Vec3&)> inside_;
 };
 
+/// A density that remembers what it was made of.
+struct ExpressionDensity {
+  DensityExpression made_of;
+  Shape shape;
+  double operator()(const Vec3& p) const { return shape.field()->evaluate(p, nullptr); }
+};
+
 }  // namespace
 
 Shape shape_from_mesh(Mesh mesh, std::string name) {
@@ -96,7 +103,13 @@ Shape shape_from_expression(std::string_view expression, const std::map<std::str
 
 Density density_from_expression(std::string_view expression, const std::map<std::string, double>& parameters) {
   const Shape shape = shape_from_expression(expression, parameters, {{-1, -1, -1}, {1, 1, 1}});
-  return [shape](const Vec3& p) { return shape.field()->evaluate(p, nullptr); };
+  return ExpressionDensity{{std::string(expression), parameters}, shape};
+}
+
+std::optional<DensityExpression> expression_of(const Density& density) {
+  const auto* made = density.target<ExpressionDensity>();
+  if (made == nullptr) return std::nullopt;
+  return made->made_of;
 }
 
 Shape shape_from_box(const Box& box, std::string name) {

@@ -132,7 +132,7 @@ TEST_F(Jobs, ReportsItsRun) {
     EXPECT_TRUE(figures.contains(key)) << key;
   }
   EXPECT_EQ(figures.at("euler"), 0);
-  EXPECT_EQ(figures.at("options").at("seed"), "7");
+  EXPECT_EQ(figures.at("options").at("seed"), 7);
   EXPECT_TRUE(figures.at("seconds").is_object());
   const std::string html = read("t.html");
   EXPECT_NE(html.find("<html"), std::string::npos);

@@ -6,8 +6,10 @@
 #include <limits>
 #include <thread>
 
+#include "evenmesh/mesh_shape.h"
 #include "gl/shaders.h"
 #include "shape/field.h"
+#include "shape/non_finite.h"
 
 namespace evenmesh {
 namespace {
@@ -124,6 +126,19 @@ TEST(GlslField, CountsWhatIsNotFinite) {
   for (int i = 0; i < 4; ++i) EXPECT_FALSE(f[i] < 0) << "is inside: " << i;
   EXPECT_LT(f[4], 0);
   EXPECT_EQ(field.non_finite(), before + 4);
+}
+
+TEST(GlslField, WhatIsNotFiniteIsCountedOnceForEachRun) {
+  const Shape shape = shader("float map(vec3 p) { return p.x > 0.3 ? sqrt(-1.0 - p.y * p.y) : length(p) - 0.5; }");
+  const MeshOptions options{.vertices = 200, .bounds = Box{{-1, -1, -1}, {1, 1, 1}}};
+  std::vector<std::size_t> counts;
+  for (int run = 0; run < 2; ++run) {
+    const NonFiniteValues values(shape);
+    mesh_shape(shape, options);
+    counts.push_back(values.count());
+  }
+  EXPECT_GT(counts[0], 0u);
+  EXPECT_EQ(counts[0], counts[1]);
 }
 
 TEST(GlslField, EnclosesBoxesWhereALipschitzConstantIsGiven) {

@@ -53,7 +53,7 @@ class RemoteField final : public Field {
   bool has_gradient() const override { return field_->has_gradient(); }
   std::size_t batch_size() const override { return 262'144; }
   bool differentiates() const override { return field_->differentiates(); }
-  std::size_t non_finite() const override { return field_->non_finite(); }
+  const std::atomic<std::size_t>* non_finite_counter() const override { return field_->non_finite_counter(); }
   bool encloses_surely() const override { return field_->encloses_surely() && slope_ == 0; }
 
   mutable std::atomic<std::size_t> calls{0}, asked{0}, single_points{0};  ///< asked: points and boxes
