@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/sums.h"
+#include "core/grouping.h"
 
 namespace evenmesh {
 namespace {
@@ -17,7 +17,8 @@ struct Quadric {
   double w = 0, d[3] = {}, a[6] = {}, b[3] = {};
   void add(const Quadric& q) {
     w += q.w;
-    for (int i = 0; i < 3; ++i) d[i] += q.d[i], b[i] += q.b[i];
+    for (int i = 0; i < 3; ++i) d[i] += q.d[i];
+    for (int i = 0; i < 3; ++i) b[i] += q.b[i];
     for (int i = 0; i < 6; ++i) a[i] += q.a[i];
   }
 };
@@ -44,9 +45,16 @@ void collect_block(const SampleSet& samples, const SampleBlock& block, std::span
     const Vec3 n = unpack_normal(samples.normal[i]);
     const double w = samples.area[i], nd = w * dot(n, d);
     q.w += w;
-    for (int a = 0; a < 3; ++a) q.d[a] += w * d[a], q.b[a] += nd * n[a];
-    q.a[0] += w * n.x * n.x, q.a[1] += w * n.x * n.y, q.a[2] += w * n.x * n.z;
-    q.a[3] += w * n.y * n.y, q.a[4] += w * n.y * n.z, q.a[5] += w * n.z * n.z;
+    for (int a = 0; a < 3; ++a) {
+      q.d[a] += w * d[a];
+      q.b[a] += nd * n[a];
+    }
+    q.a[0] += w * n.x * n.x;
+    q.a[1] += w * n.x * n.y;
+    q.a[2] += w * n.x * n.z;
+    q.a[3] += w * n.y * n.y;
+    q.a[4] += w * n.y * n.z;
+    q.a[5] += w * n.z * n.z;
   }
 }
 
@@ -66,6 +74,16 @@ CellShape solve(const Quadric& q, const Vec3& seed) {
   return {q.w, centroid, centroid + move};
 }
 
+std::vector<const Entry*> in_order(const std::vector<std::vector<Entry>>& lists, const ExecutionContext& context) {
+  std::vector<std::size_t> begin(lists.size() + 1, 0);
+  for (std::size_t c = 0; c < lists.size(); ++c) begin[c + 1] = begin[c] + lists[c].size();
+  std::vector<const Entry*> all(begin.back());
+  parallel_tasks(context, lists.size(), [&](std::size_t c) {
+    for (std::size_t i = 0; i < lists[c].size(); ++i) all[begin[c] + i] = &lists[c][i];
+  });
+  return all;
+}
+
 }  // namespace
 
 std::vector<CellShape> cell_shapes(const SampleSet& samples, std::span<const std::uint32_t> labels,
@@ -76,12 +94,15 @@ std::vector<CellShape> cell_shapes(const SampleSet& samples, std::span<const std
     for (std::size_t b = c * chunk; b < std::min(samples.blocks.size(), (c + 1) * chunk); ++b)
       collect_block(samples, samples.blocks[b], labels, seeds, entries[c]);
   });
-  std::vector<Quadric> quadrics(seeds.size());
-  for (const auto& list : entries)
-    for (const Entry& e : list) quadrics[e.label].add(e.quadric);
+  const std::vector<const Entry*> all = in_order(entries, context);
+  const Groups of_label = group_by_key(context, all.size(), seeds.size(), [&](std::size_t i) { return all[i]->label; });
   std::vector<CellShape> shapes(seeds.size());
   parallel_for(context, seeds.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) shapes[i] = solve(quadrics[i], seeds[i]);
+    for (std::size_t label = begin; label < end; ++label) {
+      Quadric sum;
+      for (const std::uint32_t i : of_label.of(label)) sum.add(all[i]->quadric);
+      shapes[label] = solve(sum, seeds[label]);
+    }
   });
   return shapes;
 }
