@@ -53,7 +53,9 @@ struct Tally {
 
   void add(const Tally& t) {
     largest_squared = std::max(largest_squared, t.largest_squared);
-    squares += t.squares, sum += t.sum, angles += t.angles;
+    squares += t.squares;
+    sum += t.sum;
+    angles += t.angles;
   }
 };
 
@@ -65,7 +67,8 @@ class Follower {
     // Both distances are rounded, hence the margin; should it not suffice, the search starts anew without a limit.
     ClosestPoint found = query_.closest(p, (distance_ + norm(p - previous_)) * (1 + 1e-9));
     if (!found.found()) found = query_.closest(p);
-    previous_ = p, distance_ = std::sqrt(found.squared_distance);
+    previous_ = p;
+    distance_ = std::sqrt(found.squared_distance);
     return found;
   }
 
@@ -98,7 +101,10 @@ std::vector<Vec3> used_vertices(const Mesh& mesh) {
   used.reserve(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t v : t)
-      if (!seen[v]) seen[v] = true, used.push_back(mesh.vertices[v]);
+      if (!seen[v]) {
+        seen[v] = true;
+        used.push_back(mesh.vertices[v]);
+      }
   return used;
 }
 
