@@ -1,13 +1,12 @@
 #include "geometry/half_edges.h"
 
-#include "core/grouping.h"
+#include "geometry/corners.h"
 
 namespace evenmesh {
 
 HalfEdges::HalfEdges(std::span<const Triangle> triangles, std::size_t vertices, const ExecutionContext& context)
     : opposite_(3 * triangles.size(), none), outgoing_(vertices, none) {
-  Groups corners =
-      group_by_key(context, 3 * triangles.size(), vertices, [&](std::size_t h) { return triangles[h / 3][h % 3]; });
+  Groups corners = corners_by_vertex(triangles, vertices, context);
   start_ = std::move(corners.start);
   half_edges_from_ = std::move(corners.items);
   constexpr std::size_t grain = 1024;

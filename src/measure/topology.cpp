@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/grouping.h"
+#include "geometry/corners.h"
 
 namespace evenmesh {
 namespace {
@@ -159,8 +159,7 @@ class VertexWalker {
 Topology measure_topology(const Mesh& mesh, const ExecutionContext& context) {
   constexpr std::size_t piece = 4096;
   const std::size_t vertices = mesh.vertices.size();
-  const Groups corners = group_by_key(context, 3 * mesh.triangles.size(), vertices,
-                                      [&](std::size_t corner) { return mesh.triangles[corner / 3][corner % 3]; });
+  const Groups corners = corners_by_vertex(mesh.triangles, vertices, context);
   Topology topology;
   topology.vertices.resize(vertices);
   SharedSets components(mesh.triangles.size());

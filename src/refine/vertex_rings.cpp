@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/grouping.h"
+#include "geometry/corners.h"
 
 namespace evenmesh {
 namespace {
@@ -14,8 +14,7 @@ constexpr std::size_t piece = 4096;  ///< vertices or triangles of a task
 VertexRings::VertexRings(const Mesh& mesh, const ExecutionContext& context)
     : mesh_(mesh), beside_start_(mesh.vertices.size() + 1, 0) {
   const std::size_t vertices = mesh.vertices.size();
-  Groups corners = group_by_key(context, 3 * mesh.triangles.size(), vertices,
-                                [&](std::size_t h) { return mesh.triangles[h / 3][h % 3]; });
+  Groups corners = corners_by_vertex(mesh.triangles, vertices, context);
   start_ = std::move(corners.start);
   around_ = std::move(corners.items);
   parallel_for(context, around_.size(), piece, [&](std::size_t begin, std::size_t end) {
