@@ -24,6 +24,11 @@ auto with_threads(const ExecutionContext& context, Body&& body) {
   return arena.execute(body);
 }
 
+/// How many threads may work at once here. What is computed must not depend on it.
+inline std::size_t threads_here() {
+  return static_cast<std::size_t>(std::max(1, tbb::this_task_arena::max_concurrency()));
+}
+
 /// Calls body(begin, end) over pieces of [0, count) of at least `grain` items, in parallel; honours cancel between
 /// pieces.
 template <typename Body>

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/parallel.h"
+
 namespace evenmesh {
 namespace {
 
 constexpr unsigned bits_per_axis = 11;
+constexpr std::size_t grain = 4096;
 
 /// Bits 0, 1, 2, … of x to bits 0, 3, 6, …
 std::uint64_t spread(std::uint64_t x) {
@@ -34,26 +37,28 @@ BoxPairs::BoxPairs(const std::vector<Box>& boxes, const ExecutionContext& contex
       all.add(box.lo);
       all.add(box.hi);
     }
-  sort_along_curve(boxes, all);
+  sort_along_curve(boxes, all, context);
   context.throw_if_cancelled();
 
   order_.resize((order_.size() + width - 1) / width * width, 0);
   std::vector<Eight> lowest(order_.size() / width);
   const Vec3 center = all.center();
   const double diagonal = all.diagonal(), scale = diagonal > 0 ? 1 / diagonal : 1;  // keeps tiny models off underflow
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Box& box = boxes[order_[i]];
-    if (box.empty()) continue;
-    for (int k = 0; k < 3; ++k) {
-      lowest[i / width].side[k][i % width] = static_cast<float>((box.lo[k] - center[k]) * scale);
-      lowest[i / width].side[k + 3][i % width] = static_cast<float>((box.hi[k] - center[k]) * scale);
+  parallel_for(context, boxes.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Box& box = boxes[order_[i]];
+      if (box.empty()) continue;
+      for (int k = 0; k < 3; ++k) {
+        lowest[i / width].side[k][i % width] = static_cast<float>((box.lo[k] - center[k]) * scale);
+        lowest[i / width].side[k + 3][i % width] = static_cast<float>((box.hi[k] - center[k]) * scale);
+      }
     }
-  }
+  });
   levels_.push_back(std::move(lowest));
-  build_levels();
+  build_levels(context);
 }
 
-void BoxPairs::sort_along_curve(const std::vector<Box>& boxes, const Box& all) {
+void BoxPairs::sort_along_curve(const std::vector<Box>& boxes, const Box& all, const ExecutionContext& context) {
   static const std::vector<std::uint64_t> spreads = [] {
     std::vector<std::uint64_t> table(1u << bits_per_axis);
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = spread(i);
@@ -63,11 +68,13 @@ void BoxPairs::sort_along_curve(const std::vector<Box>& boxes, const Box& all) {
   const double longest = std::max({size.x, size.y, size.z}), cells = (1u << bits_per_axis) - 1;
   const double scale = longest > 0 ? cells / longest : 0;
   std::vector<std::uint64_t> keys(boxes.size(), 0);
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (boxes[i].empty()) continue;
-    const Vec3 at = (boxes[i].center() - all.lo) * scale;
-    for (int k = 0; k < 3; ++k) keys[i] |= spreads[static_cast<std::size_t>(std::clamp(at[k], 0.0, cells))] << k;
-  }
+  parallel_for(context, boxes.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (boxes[i].empty()) continue;
+      const Vec3 at = (boxes[i].center() - all.lo) * scale;
+      for (int k = 0; k < 3; ++k) keys[i] |= spreads[static_cast<std::size_t>(std::clamp(at[k], 0.0, cells))] << k;
+    }
+  });
   order_.resize(boxes.size());
   std::iota(order_.begin(), order_.end(), 0u);
   std::vector<std::uint32_t> other(order_.size());
@@ -77,15 +84,17 @@ void BoxPairs::sort_along_curve(const std::vector<Box>& boxes, const Box& all) {
   }
 }
 
-void BoxPairs::build_levels() {
+void BoxPairs::build_levels(const ExecutionContext& context) {
   while (levels_.back().size() > 1) {
     const std::vector<Eight>& below = levels_.back();
     std::vector<Eight> level((below.size() + width - 1) / width);
-    for (std::size_t i = 0; i < below.size(); ++i)
-      for (int k = 0; k < 6; ++k) {
-        const auto [lo, hi] = std::minmax_element(below[i].side[k].begin(), below[i].side[k].end());
-        level[i / width].side[k][i % width] = k < 3 ? *lo : *hi;
-      }
+    parallel_for(context, below.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        for (int k = 0; k < 6; ++k) {
+          const auto [lo, hi] = std::minmax_element(below[i].side[k].begin(), below[i].side[k].end());
+          level[i / width].side[k][i % width] = k < 3 ? *lo : *hi;
+        }
+    });
     levels_.push_back(std::move(level));
   }
 }

@@ -52,8 +52,8 @@ class BoxPairs {
     }
   };
 
-  void sort_along_curve(const std::vector<Box>& boxes, const Box& all);
-  void build_levels();
+  void sort_along_curve(const std::vector<Box>& boxes, const Box& all, const ExecutionContext& context);
+  void build_levels(const ExecutionContext& context);
 
   /// Calls visit(g) for the groups g ≥ from of level 0 whose box overlaps `b`, below node `node` of `level`.
   template <typename Visit>

@@ -14,8 +14,8 @@ namespace {
 constexpr double sharp = 40, sharp_enough = 20;  ///< degrees
 
 /// The edges that turn by more than `angle` degrees, each as a triangle without width.
-Mesh edges_sharper_than(const Mesh& mesh, double angle) {
-  const HalfEdges edges(mesh.triangles, mesh.vertices.size());
+Mesh edges_sharper_than(const Mesh& mesh, double angle, const ExecutionContext& context) {
+  const HalfEdges edges(mesh.triangles, mesh.vertices.size(), context);
   const double cosine = std::cos(angle * std::numbers::pi / 180);
   const auto normal = [&](std::size_t half_edge) {
     const auto [a, b, c] = corners_of(mesh, half_edge / 3);
@@ -37,7 +37,7 @@ Mesh edges_sharper_than(const Mesh& mesh, double angle) {
 }  // namespace
 
 CreaseDistance crease_distance(const Mesh& of, const Mesh& to, double step, ExecutionContext& context) {
-  const Mesh from = edges_sharper_than(of, sharp), lines = edges_sharper_than(to, sharp_enough);
+  const Mesh from = edges_sharper_than(of, sharp, context), lines = edges_sharper_than(to, sharp_enough, context);
   CreaseDistance result;
   for (const Triangle& t : from.triangles) result.length += norm(from.vertices[t[1]] - from.vertices[t[0]]);
   if (from.triangles.empty()) return result;

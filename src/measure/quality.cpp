@@ -78,10 +78,8 @@ void put_topology(const Topology& topology, MeshQuality& q) {
     }
     ++q.vertices;
     q.max_valence = std::max<std::size_t>(q.max_valence, v.valence);
-    if (!v.on_boundary) {
-      ++interior;
-      irregular += v.valence != 6;
-    }
+    interior += !v.on_boundary;
+    irregular += !v.on_boundary && v.valence != 6;
     q.non_manifold_vertices += v.umbrellas > 1 || v.on_non_manifold_edge;
   }
   q.irregular_ratio = interior > 0 ? static_cast<double>(irregular) / static_cast<double>(interior) : 0;
@@ -112,7 +110,7 @@ MeshQuality measure_quality(const Mesh& mesh, ExecutionContext& context) {
     // The two do not depend on each other.
     parallel_tasks(context, 2, [&](std::size_t i) {
       if (i == 0)
-        topology = measure_topology(mesh);
+        topology = measure_topology(mesh, context);
       else
         sums = sum_triangles(mesh, context);
     });

@@ -1,121 +1,176 @@
 #include "measure/topology.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
-#include "geometry/union_find.h"
+#include "geometry/corners.h"
 
 namespace evenmesh {
 namespace {
 
-/// One of the three sides of a triangle, filed under its lower vertex.
+/// Disjoint sets that several threads unite at once; the lower index becomes the root. Which items end up together does
+/// not depend on the order.
+class SharedSets {
+ public:
+  explicit SharedSets(std::size_t count) : parent_(count) {
+    for (std::size_t i = 0; i < count; ++i) parent_[i].store(static_cast<std::uint32_t>(i), std::memory_order_relaxed);
+  }
+  void unite(std::uint32_t a, std::uint32_t b) {
+    for (;;) {
+      a = find(a);
+      b = find(b);
+      if (a == b) return;
+      if (a < b) std::swap(a, b);
+      std::uint32_t root = a;
+      if (parent_[a].compare_exchange_strong(root, b, std::memory_order_relaxed)) return;
+    }
+  }
+  /// Once nobody unites any more.
+  std::size_t count() const {
+    std::size_t roots = 0;
+    for (std::size_t i = 0; i < parent_.size(); ++i) roots += parent_[i].load(std::memory_order_relaxed) == i;
+    return roots;
+  }
+
+ private:
+  /// With path halving: what is written is an ancestor still, whatever others have written meanwhile.
+  std::uint32_t find(std::uint32_t x) {
+    for (;;) {
+      const std::uint32_t parent = parent_[x].load(std::memory_order_relaxed);
+      if (parent == x) return x;
+      const std::uint32_t above = parent_[parent].load(std::memory_order_relaxed);
+      if (above != parent) parent_[x].store(above, std::memory_order_relaxed);
+      x = above;
+    }
+  }
+
+  std::vector<std::atomic<std::uint32_t>> parent_;
+};
+
+/// A side of a triangle, seen from one of its ends.
 struct Side {
-  std::uint32_t upper;
+  std::uint32_t other;  ///< end
   std::uint32_t face;
   std::uint8_t first;  ///< corner of the face where the side starts
-  bool ascending;      ///< runs from the lower vertex to the upper
+  bool away;           ///< starts here
 };
 
-/// All sides in one array: those of lower vertex v at [begin[v], begin[v + 1]), sorted by upper vertex and face.
-struct Sides {
-  std::vector<std::uint32_t> begin;
-  std::vector<Side> sides;
+/// What several pieces of the vertices add up to.
+struct Tally {
+  std::size_t edges = 0, boundary = 0, non_manifold = 0, inconsistent = 0;
+  double length_sum = 0, length_squares = 0;
+
+  void add_to(Topology& topology) const {
+    topology.edges += edges;
+    topology.boundary += boundary;
+    topology.non_manifold += non_manifold;
+    topology.inconsistent += inconsistent;
+    topology.length_sum += length_sum;
+    topology.length_squares += length_squares;
+  }
 };
 
-Sides collect_sides(const Mesh& mesh) {
-  Sides result;
-  result.begin.assign(mesh.vertices.size() + 2, 0);
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) ++result.begin[std::min(t[k], t[(k + 1) % 3]) + 2];
-  std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
-  result.sides.resize(3 * mesh.triangles.size());
-  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
-    for (std::uint8_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = mesh.triangles[f][k], b = mesh.triangles[f][(k + 1) % 3];
-      result.sides[result.begin[std::min(a, b) + 1]++] = {std::max(a, b), f, k, a < b};
-    }
-  result.begin.pop_back();
-  // Faces came in order and a vertex has few sides: insertion sort keeps both cheap; hubs are left to std::sort.
-  const auto before = [](const Side& a, const Side& b) {
-    return a.upper != b.upper ? a.upper < b.upper : a.face != b.face ? a.face < b.face : a.first < b.first;
-  };
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const auto first = result.sides.begin() + result.begin[v], last = result.sides.begin() + result.begin[v + 1];
-    if (last - first > 32) {
-      std::sort(first, last, before);
-      continue;
-    }
-    for (auto i = first; i != last; ++i)
-      for (auto j = i; j != first && before(*j, *(j - 1)); --j) std::swap(*j, *(j - 1));
-  }
-  return result;
-}
+/// Looks at one vertex after the other, and at each edge from both of its ends; counts it at the lower one.
+class VertexWalker {
+ public:
+  VertexWalker(const Mesh& mesh, SharedSets& components, Tally& tally)
+      : mesh_(mesh), components_(components), tally_(tally) {}
 
-std::uint32_t corner_of(const Mesh& mesh, std::uint32_t face, std::uint32_t vertex) {
-  const Triangle& t = mesh.triangles[face];
-  return 3 * face + (t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2);
-}
-
-std::vector<VertexState> count_corners(const Mesh& mesh) {
-  std::vector<VertexState> states(mesh.vertices.size());
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) {
-      VertexState& state = states[t[k]];
-      state.used = true;
-      // A repeated vertex has one corner in a triangle.
-      if (std::find(t.begin(), t.begin() + k, t[k]) == t.begin() + k) ++state.umbrellas;
+  /// @param corners  of the vertex, 3 · face + corner, ascending
+  VertexState look_at(std::uint32_t vertex, std::span<const std::uint32_t> corners) {
+    VertexState state;
+    if (corners.empty()) return state;
+    state.used = true;
+    collect(vertex, corners);
+    state.umbrellas = static_cast<std::uint32_t>(faces_.size());
+    for (std::size_t begin = 0, end = 0; begin < sides_.size(); begin = end) {
+      while (end < sides_.size() && sides_[end].other == sides_[begin].other) ++end;
+      add_edge(vertex, std::span(sides_).subspan(begin, end - begin), state);
     }
-  return states;
-}
+    return state;
+  }
 
-/// One edge: the sides [begin, end) that join `lower` and begin->upper.
-void add_edge(const Mesh& mesh, std::uint32_t lower, const Side* begin, const Side* end, UnionFind& corners,
-              UnionFind& faces, Topology& topology) {
-  const std::uint32_t upper = begin->upper;
-  const auto count = end - begin;
-  VertexState &a = topology.vertices[lower], &b = topology.vertices[upper];
-  ++topology.edges;
-  ++a.valence;
-  ++b.valence;
-  const double squared = squared_norm(mesh.vertices[upper] - mesh.vertices[lower]);
-  topology.length_sum += std::sqrt(squared);
-  topology.length_squares += squared;
-  if (count == 1) {
-    ++topology.boundary;
-    a.on_boundary = b.on_boundary = true;
+ private:
+  /// Sides by other end, face and first corner; and the faces, a repeated vertex having one corner in a triangle.
+  void collect(std::uint32_t vertex, std::span<const std::uint32_t> corners) {
+    sides_.clear();
+    faces_.clear();
+    for (const std::uint32_t corner : corners) {
+      const std::uint32_t face = corner / 3;
+      const auto at = static_cast<std::uint8_t>(corner % 3), before = static_cast<std::uint8_t>((at + 2) % 3);
+      const Triangle& t = mesh_.triangles[face];
+      sides_.push_back({t[(at + 1u) % 3], face, at, true});
+      if (t[before] != vertex) sides_.push_back({t[before], face, before, false});  // else it came from the other end
+      if (faces_.empty() || faces_.back() != face) faces_.push_back(face);
+    }
+    const auto earlier = [](const Side& a, const Side& b) {
+      return a.other != b.other ? a.other < b.other : a.face != b.face ? a.face < b.face : a.first < b.first;
+    };
+    std::sort(sides_.begin(), sides_.end(), earlier);
+    umbrella_.resize(faces_.size());
+    std::iota(umbrella_.begin(), umbrella_.end(), 0u);
   }
-  if (count > 2) {
-    ++topology.non_manifold;
-    a.on_non_manifold_edge = b.on_non_manifold_edge = true;
+
+  /// @param sides  all that join the vertex and one other
+  void add_edge(std::uint32_t vertex, std::span<const Side> sides, VertexState& state) {
+    const std::uint32_t other = sides[0].other;
+    state.valence += vertex == other ? 2 : 1;
+    state.on_boundary |= sides.size() == 1;
+    state.on_non_manifold_edge |= sides.size() > 2;
+    if (sides.size() == 2 && unite_umbrellas(sides[0].face, sides[1].face)) --state.umbrellas;
+    if (other < vertex) return;
+    ++tally_.edges;
+    tally_.boundary += sides.size() == 1;
+    tally_.non_manifold += sides.size() > 2;
+    tally_.inconsistent += sides.size() == 2 && sides[0].away == sides[1].away;
+    const double squared = squared_norm(mesh_.vertices[other] - mesh_.vertices[vertex]);
+    tally_.length_sum += std::sqrt(squared);
+    tally_.length_squares += squared;
+    for (const Side& side : sides.subspan(1)) components_.unite(sides[0].face, side.face);
   }
-  if (count == 2) {
-    if (begin[0].ascending == begin[1].ascending) ++topology.inconsistent;
-    for (const std::uint32_t v : {lower, upper})
-      if (corners.unite(corner_of(mesh, begin[0].face, v), corner_of(mesh, begin[1].face, v)))
-        --topology.vertices[v].umbrellas;
+
+  std::uint32_t umbrella_of(std::uint32_t face) {
+    auto at = static_cast<std::uint32_t>(std::lower_bound(faces_.begin(), faces_.end(), face) - faces_.begin());
+    while (umbrella_[at] != at) {
+      umbrella_[at] = umbrella_[umbrella_[at]];
+      at = umbrella_[at];
+    }
+    return at;
   }
-  for (const Side* side = begin + 1; side != end; ++side)
-    if (faces.unite(begin->face, side->face)) --topology.components;
-}
+  /// Whether two different umbrellas became one.
+  bool unite_umbrellas(std::uint32_t face, std::uint32_t other) {
+    const std::uint32_t a = umbrella_of(face), b = umbrella_of(other);
+    umbrella_[std::max(a, b)] = std::min(a, b);
+    return a != b;
+  }
+
+  const Mesh& mesh_;
+  SharedSets& components_;
+  Tally& tally_;
+  std::vector<Side> sides_;
+  std::vector<std::uint32_t> faces_;     ///< around the vertex, ascending
+  std::vector<std::uint32_t> umbrella_;  ///< disjoint sets of them
+};
 
 }  // namespace
 
-Topology measure_topology(const Mesh& mesh) {
+Topology measure_topology(const Mesh& mesh, const ExecutionContext& context) {
+  constexpr std::size_t piece = 4096;
+  const std::size_t vertices = mesh.vertices.size();
+  const Groups corners = corners_by_vertex(mesh.triangles, vertices, context);
   Topology topology;
-  topology.vertices = count_corners(mesh);
-  topology.components = mesh.triangles.size();
-  const Sides all = collect_sides(mesh);
-  UnionFind corners(3 * mesh.triangles.size()), faces(mesh.triangles.size());
-  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
-    const Side *side = all.sides.data() + all.begin[v], *last = all.sides.data() + all.begin[v + 1];
-    while (side != last) {
-      const Side* end = side + 1;
-      while (end != last && end->upper == side->upper) ++end;
-      add_edge(mesh, v, side, end, corners, faces, topology);
-      side = end;
-    }
-  }
+  topology.vertices.resize(vertices);
+  SharedSets components(mesh.triangles.size());
+  std::vector<Tally> tallies((vertices + piece - 1) / piece);
+  parallel_tasks(context, tallies.size(), [&](std::size_t p) {
+    VertexWalker walker(mesh, components, tallies[p]);
+    for (std::size_t v = p * piece; v < std::min(vertices, (p + 1) * piece); ++v)
+      topology.vertices[v] = walker.look_at(static_cast<std::uint32_t>(v), corners.of(v));
+  });
+  for (const Tally& tally : tallies) tally.add_to(topology);
+  topology.components = components.count();
   return topology;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
 
 namespace evenmesh {
@@ -19,13 +20,13 @@ struct VertexState {
 struct Topology {
   std::vector<VertexState> vertices;
   std::size_t edges = 0;
-  std::size_t boundary = 0, non_manifold = 0,
-              inconsistent = 0;               ///< edges of one, of three or more, of two triangles that disagree
+  /// Edges of one, of three or more, of two triangles that disagree.
+  std::size_t boundary = 0, non_manifold = 0, inconsistent = 0;
   std::size_t components = 0;                 ///< connected over edges
   double length_sum = 0, length_squares = 0;  ///< over edges, model units
 };
 
-/// Cost: some 0.1 µs per triangle.
-Topology measure_topology(const Mesh& mesh);
+/// Same bits for any number of threads. Cost: some 0.2 µs per triangle and core.
+Topology measure_topology(const Mesh& mesh, const ExecutionContext& context = ExecutionContext::silent());
 
 }  // namespace evenmesh

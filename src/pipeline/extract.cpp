@@ -95,17 +95,12 @@ void constrain(const Tessellation& cells, Draft& draft) {
   constraints.max_chordal_deviation = feature_deviation * draft.sizing.mean();
 }
 
-/// The nearest vertex goes to the apex: relaxed seeds leave it not far from there.
-void constrain_apex(Draft& draft, const Vec3& apex) {
-  constexpr double max_moved = 1;  // edges
-  std::vector<Vec3>& vertices = draft.mesh.vertices;
-  std::size_t nearest = 0;
-  for (std::size_t v = 1; v < vertices.size(); ++v)
-    if (squared_norm(vertices[v] - apex) < squared_norm(vertices[nearest] - apex)) nearest = v;
-  if (draft.constraints.curve[nearest] != VertexConstraints::free) return;
-  if (norm(vertices[nearest] - apex) > max_moved * draft.sizing.edge(apex)) return;
-  draft.constraints.curve[nearest] = VertexConstraints::corner;
-  vertices[nearest] = apex;
+/// To an apex goes the vertex nearest to it, which relaxed seeds leave not far from there.
+void constrain_to_apexes(const Tessellation& cells, Draft& draft) {
+  std::vector<Vec3> apexes;
+  for (const Vec3& apex : cells.features.apexes)
+    if (cells.balls.outside(apex) == apex) apexes.push_back(apex);
+  constrain_apexes(draft.mesh, draft.constraints, apexes, draft.sizing.mean());
 }
 
 }  // namespace
@@ -126,8 +121,7 @@ Draft extract(const Tessellation& cells, const MeshOptions& options, ExecutionCo
   const auto vertices = static_cast<double>(std::max<std::size_t>(4, draft.mesh.vertices.size()));
   draft.sizing = cells.sampling.sizing.with_mean(edge_length_of(cells.sampling.samples.total_area, vertices));
   constrain(cells, draft);
-  for (const Vec3& apex : cells.features.apexes)
-    if (cells.balls.outside(apex) == apex) constrain_apex(draft, apex);
+  constrain_to_apexes(cells, draft);
   return draft;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "geometry/triangle.h"
+#include "refine/cell_samples.h"
 #include "refine/vertex_rings.h"
 
 namespace evenmesh {
@@ -17,91 +18,21 @@ constexpr double among_the_worst = 0.8;        ///< of the largest deviation: wh
 constexpr int max_rounds = 16;
 constexpr int max_rounds_inexact = 4;  ///< on samples off the surface: later rounds only cost quality
 constexpr int max_perturbations = 2;   ///< rounds around the worst where nothing helps there
-constexpr std::size_t samples_per_cell = 20;
-
-/// Samples of every vertex' cell: some, or all where it matters.
-class CellSamples {
- public:
-  /// @param projector  brings samples onto the surface within `error`; null: they lie on it
-  CellSamples(const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample, std::size_t vertices,
-              const Projector* projector, double error, ExecutionContext& context)
-      : samples_(samples),
-        vertex_of_sample_(vertex_of_sample),
-        projector_(projector),
-        error_(error),
-        context_(context),
-        start_(vertices + 1, 0),
-        list_(vertices, 0) {
-    const std::size_t stride =
-        std::max<std::size_t>(1, samples.size() / (samples_per_cell * std::max<std::size_t>(1, vertices)));
-    const auto each = [&](const auto& visit) {
-      for (std::size_t b = 0; b < samples.blocks.size(); ++b)
-        for (std::size_t i = (samples.blocks[b].begin + stride - 1) / stride * stride; i < samples.blocks[b].end;
-             i += stride)
-          if (vertex_of_sample[i] < vertices) visit(b, i);
-    };
-    each([&](std::size_t, std::size_t i) { ++start_[vertex_of_sample[i] + 1]; });
-    for (std::size_t v = 0; v < vertices; ++v) start_[v + 1] += start_[v];
-    points_.resize(start_.back());
-    std::vector<std::size_t> fill(start_.begin(), start_.end() - 1);
-    each([&](std::size_t b, std::size_t i) { points_[fill[vertex_of_sample[i]]++] = position(b, i); });
-    correct(points_);
-  }
-  std::span<const Vec3> of(std::uint32_t v) const {
-    if (list_[v] > 0) return lists_[list_[v] - 1];
-    return {points_.data() + start_[v], start_[v + 1] - start_[v]};
-  }
-  /// From now on all samples of those vertices' cells. Cost: one pass over the labels.
-  void take_all_of(std::span<const std::uint32_t> vertices) {
-    for (const std::uint32_t v : vertices)
-      list_[v] = static_cast<std::uint32_t>(lists_.size() + 1), lists_.emplace_back();
-    constexpr std::size_t piece = 1024;
-    std::vector<std::vector<std::pair<std::uint32_t, Vec3>>> found((samples_.blocks.size() + piece - 1) / piece);
-    parallel_tasks(context_, found.size(), [&](std::size_t p) {
-      for (std::size_t b = p * piece; b < std::min(samples_.blocks.size(), (p + 1) * piece); ++b)
-        for (std::size_t i = samples_.blocks[b].begin; i < samples_.blocks[b].end; ++i)
-          if (const std::uint32_t v = vertex_of_sample_[i]; v < list_.size() && list_[v] > 0)
-            found[p].push_back({list_[v] - 1, position(b, i)});
-    });
-    for (const auto& of_piece : found)
-      for (const auto& [list, point] : of_piece) lists_[list].push_back(point);
-    for (auto& list : lists_) correct(list);
-  }
-
- private:
-  Vec3 position(std::size_t block, std::size_t i) const {
-    return samples_.block_center(samples_.blocks[block]) + Vec3{samples_.x[i], samples_.y[i], samples_.z[i]};
-  }
-
-  void correct(std::vector<Vec3>& points) const {
-    if (projector_ == nullptr) return;
-    parallel_for(context_, points.size(), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) points[i] = projector_->project(points[i], error_);
-    });
-  }
-
-  const SampleSet& samples_;
-  std::span<const std::uint32_t> vertex_of_sample_;
-  const Projector* projector_;
-  double error_;
-  ExecutionContext& context_;
-  std::vector<std::size_t> start_;
-  std::vector<Vec3> points_;
-  std::vector<std::uint32_t> list_;  ///< by vertex: 1 + index into lists_, 0 = some samples have to do
-  std::vector<std::vector<Vec3>> lists_;
-};
 
 /// The mesh, and how far each cell's samples lie from it.
 class Fit {
  public:
-  Fit(Mesh& m, const CellSamples& c, const Projector* p, const VertexConstraints& h)
-      : mesh(m), cells(c), projector(p), constraints(h), rings(m) {
-    deviation.assign(m.vertices.size(), 0), stale.assign(m.vertices.size(), 1), hopeless.assign(m.vertices.size(), 0);
+  Fit(Mesh& m, const CellSamples& c, const Projector* p, const VertexConstraints& h, const ExecutionContext& context)
+      : mesh(m), cells(c), projector(p), constraints(h), rings(m, context) {
+    deviation.assign(m.vertices.size(), 0);
+    stale.assign(m.vertices.size(), 1);
+    hopeless.assign(m.vertices.size(), 0);
   }
 
   /// Largest squared distance of a cell's samples from the triangles around its vertex; zero when all are so near that
   /// nobody asks how near.
   double measured_deviation(std::uint32_t v) const {
+    if (rings.triangles(v).empty()) return 0;
     const double edge = worth_fitting * rings.edge_length(v);
     double worst = 0;
     for (const Vec3& p : cells.of(v))
@@ -112,7 +43,10 @@ class Fit {
   void measure_deviations(const ExecutionContext& context) {
     parallel_for(context, deviation.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v)
-        if (stale[v]) deviation[v] = measured_deviation(static_cast<std::uint32_t>(v)), stale[v] = hopeless[v] = 0;
+        if (stale[v]) {
+          deviation[v] = measured_deviation(static_cast<std::uint32_t>(v));
+          stale[v] = hopeless[v] = 0;
+        }
     });
   }
   /// Vertices whose deviation is above `share` of the largest, for which there is hope, the worst first.
@@ -190,7 +124,10 @@ class Attempt {
   Attempt(Fit& fit, std::uint32_t v) : fit_(fit), mesh_(fit.mesh), rings_(fit.rings), v_(v) {
     double most = -1;
     for (const Vec3& p : fit.cells.of(v))
-      if (const double d = fit.squared_distance(p, v); d > most) most = d, tip_ = p;
+      if (const double d = fit.squared_distance(p, v); d > most) {
+        most = d;
+        tip_ = p;
+      }
   }
 
   /// Pulls a vertex of the neighbourhood onto the sample that is farthest from the mesh, or as far towards it as the
@@ -218,7 +155,11 @@ class Attempt {
     double distance = std::numeric_limits<double>::infinity();
     for (const std::uint32_t t : rings_.triangles(v_)) {
       const Vec3 q = fit_.closest_on(t, tip_);
-      if (const double d = squared_norm(tip_ - q); d < distance) distance = d, nearest = t, foot = q;
+      if (const double d = squared_norm(tip_ - q); d < distance) {
+        distance = d;
+        nearest = t;
+        foot = q;
+      }
     }
     const Triangle corners = mesh_.triangles[nearest];
     for (const std::uint32_t c : corners)
@@ -258,8 +199,11 @@ class Attempt {
 
   /// Positions, and the triangles around the region as they are now.
   void remember(std::span<const std::uint32_t> region) {
-    positions_.clear(), triangles_.clear(), normals_.clear();
-    worst_before_ = 0, floor_ = min_score;
+    positions_.clear();
+    triangles_.clear();
+    normals_.clear();
+    worst_before_ = 0;
+    floor_ = min_score;
     for (const std::uint32_t w : region) {
       positions_.push_back(mesh_.vertices[w]);
       worst_before_ = std::max(worst_before_, fit_.deviation[w]);
@@ -354,9 +298,10 @@ std::vector<std::uint32_t> take_independent(const Fit& fit, std::vector<std::uin
 std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
                          const Projector* projector, double sample_error, ExecutionContext& context,
                          const VertexConstraints& constraints) {
+  if (mesh.triangles.empty()) return 0;
   CellSamples cells(samples, vertex_of_sample, mesh.vertices.size(), sample_error > 0 ? projector : nullptr,
                     sample_error, context);
-  Fit fit(mesh, cells, projector, constraints);
+  Fit fit(mesh, cells, projector, constraints, context);
   fit.measure_deviations(context);
   const auto far = fit.far_vertices(0);
   cells.take_all_of(far);
@@ -380,12 +325,9 @@ std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const s
       });
       moves += static_cast<std::size_t>(std::count(moved.begin(), moved.end(), 1));
     }
-    if (moves > before)
-      perturb = false;
-    else if (perturb || shakes == max_perturbations)
-      break;
-    else
-      perturb = true, ++shakes;
+    if (moves == before && (perturb || shakes == max_perturbations)) break;
+    perturb = moves == before;
+    shakes += perturb;
   }
   return moves;
 }

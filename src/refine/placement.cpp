@@ -6,6 +6,7 @@
 
 #include "core/sums.h"
 #include "geometry/quadric.h"
+#include "core/grouping.h"
 
 namespace evenmesh {
 namespace {
@@ -47,6 +48,16 @@ CellShape solve(Quadric q, const Vec3& seed) {
   return {area, centroid, centroid + move};
 }
 
+std::vector<const Entry*> in_order(const std::vector<std::vector<Entry>>& lists, const ExecutionContext& context) {
+  std::vector<std::size_t> begin(lists.size() + 1, 0);
+  for (std::size_t c = 0; c < lists.size(); ++c) begin[c + 1] = begin[c] + lists[c].size();
+  std::vector<const Entry*> all(begin.back());
+  parallel_tasks(context, lists.size(), [&](std::size_t c) {
+    for (std::size_t i = 0; i < lists[c].size(); ++i) all[begin[c] + i] = &lists[c][i];
+  });
+  return all;
+}
+
 }  // namespace
 
 std::vector<CellShape> cell_shapes(const SampleSet& samples, std::span<const std::uint32_t> labels,
@@ -57,12 +68,15 @@ std::vector<CellShape> cell_shapes(const SampleSet& samples, std::span<const std
     for (std::size_t b = c * chunk; b < std::min(samples.blocks.size(), (c + 1) * chunk); ++b)
       collect_block(samples, samples.blocks[b], labels, seeds, entries[c]);
   });
-  std::vector<Quadric> quadrics(seeds.size());
-  for (const auto& list : entries)
-    for (const Entry& e : list) quadrics[e.label].add(e.quadric);
+  const std::vector<const Entry*> all = in_order(entries, context);
+  const Groups of_label = group_by_key(context, all.size(), seeds.size(), [&](std::size_t i) { return all[i]->label; });
   std::vector<CellShape> shapes(seeds.size());
   parallel_for(context, seeds.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) shapes[i] = solve(quadrics[i], seeds[i]);
+    for (std::size_t label = begin; label < end; ++label) {
+      Quadric sum;
+      for (const std::uint32_t i : of_label.of(label)) sum.add(all[i]->quadric);
+      shapes[label] = solve(sum, seeds[label]);
+    }
   });
   return shapes;
 }

@@ -35,7 +35,9 @@ void smooth(Mesh& mesh, const std::vector<char>& marked, const Projector* projec
   for (const Triangle& t : mesh.triangles)
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t v = t[c], w = t[(c + 1) % 3];  // every edge comes twice, once from each side
-      if (marked[v]) sum[v] += mesh.vertices[w], ++count[v];
+      if (!marked[v]) continue;
+      sum[v] += mesh.vertices[w];
+      ++count[v];
     }
   for (std::size_t v = 0; v < marked.size(); ++v) {
     if (!marked[v] || count[v] == 0) continue;
@@ -54,7 +56,8 @@ void shift(Mesh& mesh, const std::vector<char>& marked, double share) {
     const Vec3 n = cross(b - a, c - a);
     for (int i = 0; i < 3; ++i) {
       normal[t[i]] += n;
-      length[t[i]] += norm(mesh.vertices[t[(i + 1) % 3]] - mesh.vertices[t[i]]), ++count[t[i]];
+      length[t[i]] += norm(mesh.vertices[t[(i + 1) % 3]] - mesh.vertices[t[i]]);
+      ++count[t[i]];
     }
   }
   for (std::size_t v = 0; v < marked.size(); ++v)
@@ -80,7 +83,10 @@ Patch take_cluster(const Mesh& mesh, Pairs& pairs, const VertexConstraints& cons
     std::erase_if(pairs, [&](const auto& pair) {
       for (const std::uint32_t t : {pair.first, pair.second})
         for (const std::uint32_t v : mesh.triangles[t])
-          if (in[v]) return cluster.push_back(pair), grown = true;
+          if (in[v]) {
+            cluster.push_back(pair);
+            return grown = true;
+          }
       return false;
     });
   }
@@ -88,7 +94,8 @@ Patch take_cluster(const Mesh& mesh, Pairs& pairs, const VertexConstraints& cons
   for (std::size_t v = 0; v < in.size(); ++v)
     if (in[v]) box.add(mesh.vertices[v]);
   const double margin = 0.5 * box.diagonal();
-  box.lo -= {margin, margin, margin}, box.hi += {margin, margin, margin};
+  box.lo -= {margin, margin, margin};
+  box.hi += {margin, margin, margin};
   Patch patch;
   std::vector<std::uint32_t> index(mesh.vertices.size(), 0xffffffffu);
   for (const Triangle& t : mesh.triangles) {
@@ -127,7 +134,9 @@ bool separate(Patch& patch, const Projector* projector, const IntersectionFinder
       else
         smooth(mesh, patch.movable, motion == 2 ? projector : nullptr);
       const std::size_t left = find(mesh).size();
-      if (left < fewest) fewest = left, patch.mesh = mesh;
+      if (left >= fewest) continue;
+      fewest = left;
+      patch.mesh = mesh;
     }
   }
   return fewest < before;
@@ -158,9 +167,11 @@ std::size_t separate(Mesh& mesh, Pairs pairs, const Projector* projector, const 
     std::vector<char> marked = region(mesh, pairs, round / 4);
     for (std::uint32_t v = 0; v < marked.size(); ++v) marked[v] = marked[v] && !constraints.vertex(v);
     smooth(mesh, marked, round % 4 < 2 ? projector : nullptr);
-    flip_to_delaunay(mesh, constraints);
+    flip_to_delaunay(mesh, constraints, context);
     pairs = find(mesh);
-    if (pairs.size() < fewest) fewest = pairs.size(), best = mesh;
+    if (pairs.size() >= fewest) continue;
+    fewest = pairs.size();
+    best = mesh;
   }
   if (pairs.size() > fewest) mesh = std::move(best);
   if (fewest == 0) return 0;
@@ -169,7 +180,8 @@ std::size_t separate(Mesh& mesh, Pairs pairs, const Projector* projector, const 
     separate_clusters(mesh, find(mesh), projector, find, constraints, context);
     const std::size_t left = find(mesh).size();
     if (left >= fewest) break;
-    fewest = left, best = mesh;
+    fewest = left;
+    best = mesh;
   }
   mesh = std::move(best);
   return fewest;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 #include "geometry/segment.h"
 
@@ -39,7 +40,76 @@ double deviation_between(const FeatureCurve& curve, const Vec3& p, const Vec3& q
   return std::sqrt(most);
 }
 
+/// Which apexes a place may be within reach of.
+class ApexCells {
+ public:
+  ApexCells(std::span<const Vec3> apexes, double reach) : size_(1.001 * reach) {  // reach beyond what rounding may hide
+    for (std::uint32_t a = 0; a < apexes.size(); ++a) {
+      const Cell home = cell_of(apexes[a]);
+      for (int k = 0; k < 27; ++k)
+        apexes_[{home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1}].push_back(a);
+    }
+  }
+  std::span<const std::uint32_t> around(const Vec3& p) const {
+    const auto found = apexes_.find(cell_of(p));
+    if (found == apexes_.end()) return {};
+    return found->second;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  struct Hash {
+    std::size_t operator()(const Cell& c) const {
+      std::uint64_t h = 0;
+      for (const std::int64_t x : c) {
+        h = (h ^ static_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 32;
+      }
+      return h;
+    }
+  };
+  Cell cell_of(const Vec3& p) const {
+    constexpr double most = 1e15;
+    Cell cell;
+    for (int a = 0; a < 3; ++a)
+      cell[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(std::clamp(std::floor(p[a] / size_), -most, most));
+    return cell;
+  }
+
+  double size_;
+  std::unordered_map<Cell, std::vector<std::uint32_t>, Hash> apexes_;
+};
+
 }  // namespace
+
+std::size_t constrain_apexes(Mesh& mesh, VertexConstraints& constraints, std::span<const Vec3> apexes,
+                             double max_distance) {
+  if (apexes.empty() || !(max_distance > 0)) return 0;
+  if (constraints.curve.empty()) constraints.curve.assign(mesh.vertices.size(), VertexConstraints::free);
+  const ApexCells cells(apexes, max_distance);
+  std::vector<std::vector<std::uint32_t>> candidates(apexes.size());
+  const auto file = [&](std::uint32_t v) {
+    for (const std::uint32_t apex : cells.around(mesh.vertices[v])) candidates[apex].push_back(v);
+  };
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) file(v);
+  std::size_t moved = 0;
+  for (std::size_t apex = 0; apex < apexes.size(); ++apex) {
+    std::uint32_t nearest = VertexConstraints::free;
+    double distance = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t v : candidates[apex])
+      if (const double d = squared_norm(mesh.vertices[v] - apexes[apex]);
+          d < distance || (d == distance && v < nearest)) {
+        distance = d;
+        nearest = v;
+      }
+    if (!(std::sqrt(distance) <= max_distance) || constraints.vertex(nearest)) continue;
+    constraints.curve[nearest] = VertexConstraints::corner;
+    mesh.vertices[nearest] = apexes[apex];
+    file(nearest);
+    ++moved;
+  }
+  return moved;
+}
 
 bool VertexConstraints::edge(std::uint32_t a, std::uint32_t b) const {
   return vertex(a) && vertex(b) &&

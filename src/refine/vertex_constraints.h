@@ -31,4 +31,10 @@ struct VertexConstraints {
   void release(const Mesh& mesh, std::span<const std::uint32_t> triangles);
 };
 
+/// Apex by apex, the vertex nearest to it (of several the first) goes there and becomes a corner, if it is free and at
+/// most `max_distance` away; what earlier apexes have moved counts where it is by then. Returns how many moved.
+/// Cost: O(vertices + apexes), some 20 ns each, as long as no neighbourhood of that size is full of apexes.
+std::size_t constrain_apexes(Mesh& mesh, VertexConstraints& constraints, std::span<const Vec3> apexes,
+                             double max_distance);
+
 }  // namespace evenmesh

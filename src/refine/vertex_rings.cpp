@@ -2,25 +2,43 @@
 
 #include <algorithm>
 
-namespace evenmesh {
+#include "geometry/corners.h"
 
-VertexRings::VertexRings(const Mesh& mesh)
-    : mesh_(mesh), start_(mesh.vertices.size() + 1, 0), around_(3 * mesh.triangles.size()) {
-  for (const Triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t) ++start_[v + 1];
-  for (std::size_t v = 0; v + 1 < start_.size(); ++v) start_[v + 1] += start_[v];
-  std::vector<std::uint32_t> fill(start_.begin(), start_.end() - 1);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint32_t v : mesh.triangles[t]) around_[fill[v]++] = static_cast<std::uint32_t>(t);
-  beside_start_.push_back(0);
-  beside_.reserve(around_.size());
-  for (std::uint32_t v = 0; v + 1 < start_.size(); ++v) {
-    const auto first = static_cast<std::ptrdiff_t>(beside_.size());
-    for (const std::uint32_t t : triangles(v))
-      for (const std::uint32_t w : mesh.triangles[t])
-        if (w != v && std::find(beside_.begin() + first, beside_.end(), w) == beside_.end()) beside_.push_back(w);
-    beside_start_.push_back(static_cast<std::uint32_t>(beside_.size()));
-  }
+namespace evenmesh {
+namespace {
+
+constexpr std::size_t piece = 4096;  ///< vertices or triangles of a task
+
+}  // namespace
+
+VertexRings::VertexRings(const Mesh& mesh, const ExecutionContext& context)
+    : mesh_(mesh), beside_start_(mesh.vertices.size() + 1, 0) {
+  const std::size_t vertices = mesh.vertices.size();
+  Groups corners = corners_by_vertex(mesh.triangles, vertices, context);
+  start_ = std::move(corners.start);
+  around_ = std::move(corners.items);
+  parallel_for(context, around_.size(), piece, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) around_[i] /= 3;
+  });
+
+  std::vector<std::vector<std::uint32_t>> found((vertices + piece - 1) / piece);
+  parallel_tasks(context, found.size(), [&](std::size_t p) {
+    for (std::size_t v = p * piece; v < std::min(vertices, (p + 1) * piece); ++v)
+      beside_start_[v + 1] = append_neighbours(static_cast<std::uint32_t>(v), found[p]);
+  });
+  for (std::size_t v = 0; v < vertices; ++v) beside_start_[v + 1] += beside_start_[v];
+  beside_.resize(beside_start_.back());
+  parallel_tasks(context, found.size(), [&](std::size_t p) {
+    std::copy(found[p].begin(), found[p].end(), beside_.begin() + beside_start_[p * piece]);
+  });
+}
+
+std::uint32_t VertexRings::append_neighbours(std::uint32_t v, std::vector<std::uint32_t>& list) const {
+  const auto first = static_cast<std::ptrdiff_t>(list.size());
+  for (const std::uint32_t t : triangles(v))
+    for (const std::uint32_t w : mesh_.triangles[t])
+      if (w != v && std::find(list.begin() + first, list.end(), w) == list.end()) list.push_back(w);
+  return static_cast<std::uint32_t>(list.size() - static_cast<std::size_t>(first));
 }
 
 Vec3 VertexRings::normal(std::uint32_t v) const {
@@ -72,12 +90,18 @@ double VertexRings::worst_score(std::uint32_t v, std::span<const Vec3> normals_b
   return worst;
 }
 
-std::vector<std::uint32_t> triangles_below(const Mesh& mesh, double least) {
+std::vector<std::uint32_t> triangles_below(const Mesh& mesh, double least, const ExecutionContext& context) {
+  const std::size_t triangles = mesh.triangles.size();
+  std::vector<std::vector<std::uint32_t>> found((triangles + piece - 1) / piece);
+  parallel_tasks(context, found.size(), [&](std::size_t p) {
+    for (std::size_t t = p * piece; t < std::min(triangles, (p + 1) * piece); ++t) {
+      const Triangle& c = mesh.triangles[t];
+      if (VertexRings::score(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]) < least)
+        found[p].push_back(static_cast<std::uint32_t>(t));
+    }
+  });
   std::vector<std::uint32_t> list;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle& c = mesh.triangles[t];
-    if (VertexRings::score(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]) < least) list.push_back(t);
-  }
+  for (const std::vector<std::uint32_t>& some : found) list.insert(list.end(), some.begin(), some.end());
   return list;
 }
 

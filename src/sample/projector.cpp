@@ -17,7 +17,10 @@ class MeshProjector : public Projector {
   MeshProjector(const Mesh& mesh, const Box& bounds, ExecutionContext& context)
       : query_(mesh, context), bounds_(bounds) {
     const Box own = mesh.bounds();
-    for (int a = 0; a < 3; ++a) cut_[2 * a] = own.lo[a]<bounds.lo[a], cut_[2 * a + 1] = own.hi[a]> bounds.hi[a];
+    for (int a = 0; a < 3; ++a) {
+      cut_[2 * a] = own.lo[a] < bounds.lo[a];
+      cut_[2 * a + 1] = own.hi[a] > bounds.hi[a];
+    }
   }
   Vec3 project(const Vec3& p, double limit) const override {
     Vec3 best = p;
@@ -30,7 +33,10 @@ class MeshProjector : public Projector {
       if (!cut_[face]) continue;
       Vec3 q = inside_cuts(p);
       q[face / 2] = face % 2 == 0 ? bounds_.lo[face / 2] : bounds_.hi[face / 2];
-      if (const double distance = squared_norm(q - p); distance < nearest) nearest = distance, best = q;
+      if (const double distance = squared_norm(q - p); distance < nearest) {
+        nearest = distance;
+        best = q;
+      }
     }
     return best;
   }
@@ -78,8 +84,16 @@ class FieldProjector : public Projector {
     Vec3 face_step;
     for (int a = 0; a < 3; ++a) {
       const double below = bounds_.lo[a] - p[a], above = p[a] - bounds_.hi[a];
-      if (below > face_distance) face_distance = below, face_step = {}, face_step[a] = below;
-      if (above > face_distance) face_distance = above, face_step = {}, face_step[a] = -above;
+      if (below > face_distance) {
+        face_distance = below;
+        face_step = {};
+        face_step[a] = below;
+      }
+      if (above > face_distance) {
+        face_distance = above;
+        face_step = {};
+        face_step[a] = -above;
+      }
     }
     return face_distance > field_distance ? face_step : field_step;
   }
@@ -160,7 +174,9 @@ class SampleProjector : public Projector {
 struct Evaluated {
   explicit Evaluated(std::size_t n) : x(n), y(n), z(n), f(n), dx(n), dy(n), dz(n) {}
   void place(std::size_t i, const Vec3& p) {
-    x[i] = static_cast<float>(p.x), y[i] = static_cast<float>(p.y), z[i] = static_cast<float>(p.z);
+    x[i] = static_cast<float>(p.x);
+    y[i] = static_cast<float>(p.y);
+    z[i] = static_cast<float>(p.z);
   }
   PointBatch batch() const { return {x, y, z}; }
   std::vector<float> x, y, z, f, dx, dy, dz;

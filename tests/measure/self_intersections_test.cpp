@@ -158,6 +158,51 @@ TEST(SelfIntersections, KnowNeighbours) {
   EXPECT_EQ(count_in({a, b, c, {1, 1, -1}, {1, 1, 1}}, {{0, 1, 2}, {3, 4, 4}}), 0u) << "degenerate ones are left out";
 }
 
+TEST(SelfIntersections, OfTrianglesThatShareAnEdgeOfMoreThanTwo) {
+  const Vec3 a{0, 0, 0}, b{4, 0, 0};
+  const std::vector<Triangle> three = {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}};
+  EXPECT_EQ(count_in({a, b, {2, 3, 0}, {2, -3, 0}, {2, 0, 3}}, three), 0u) << "a fin on a flat sheet";
+  EXPECT_EQ(count_in({a, b, {2, 3, 0}, {2, 3, 1}, {2, 3, 2}}, three), 0u) << "pages of a book";
+  EXPECT_EQ(count_in({a, b, {2, 3, 0}, {1, 2, 0}, {2, 0, 3}}, three), 1u) << "two of them folded onto each other";
+  EXPECT_EQ(count_in({a, b, {2, 3, 0}, {1, 2, 0}, {3, 1, 0}}, three), 3u) << "all folded onto each other";
+  EXPECT_EQ(
+      count_in({a, b, {2, 3, 0}, {2, -3, 0}, {2, 0, 3}, {2, 0, -3}}, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {0, 1, 5}}), 0u)
+      << "two sheets cross in an edge of both";
+}
+
+TEST(SelfIntersections, CountTheSameTriangleOncePerPair) {
+  const std::vector<Vec3> corners = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+  EXPECT_EQ(count_in(corners, {{0, 1, 2}, {0, 1, 2}}), 1u);
+  EXPECT_EQ(count_in(corners, {{0, 1, 2}, {1, 2, 0}, {2, 1, 0}}), 3u) << "whichever way round";
+  std::vector<Vec3> twice = corners;
+  twice.insert(twice.end(), corners.begin(), corners.end());
+  EXPECT_EQ(count_in(twice, {{0, 1, 2}, {3, 4, 5}}), 1u) << "in the same place";
+  EXPECT_EQ(count_in(twice, {{0, 1, 2}, {0, 4, 5}}), 1u) << "in the same place, one vertex in common";
+  EXPECT_EQ(count_in(twice, {{0, 1, 2}, {0, 1, 5}}), 1u) << "in the same place, an edge in common";
+}
+
+TEST(SelfIntersections, OfSolidsThatShareAVertexOrAnEdge) {
+  const Mesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  const auto with_another = [&](std::vector<Vec3> more, const Triangle& last, std::uint32_t first) {
+    Mesh mesh = tetrahedron;
+    mesh.vertices.insert(mesh.vertices.end(), more.begin(), more.end());
+    const auto [b, c, d] = last;
+    for (const Triangle& t : {Triangle{first, c, b}, {first, b, d}, {first, d, c}, {b, c, d}})
+      mesh.triangles.push_back(t);
+    return self_intersections(mesh).size();
+  };
+  EXPECT_EQ(with_another({{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}, {4, 5, 6}, 0), 0u) << "tip to tip";
+  EXPECT_EQ(with_another({{0.5, 0.5, 0.6}, {0.5, 0.6, 0.5}, {0.6, 0.5, 0.5}}, {4, 5, 6}, 0), 1u * 3)
+      << "tip through a face";
+  EXPECT_EQ(with_another({{0, -1, 0}, {0, 0, -1}}, {1, 4, 5}, 0), 0u) << "edge to edge";
+  EXPECT_EQ(with_another({{0.1, 0.1, -1}, {0.1, -1, 0.1}}, {1, 4, 5}, 0), 0u) << "edge to edge, turned";
+}
+
+TEST(SelfIntersections, OfNothingButDegenerateTrianglesAreNone) {
+  EXPECT_EQ(count_in({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}, {0, 1, 2}, {0, 0, 1}, {2, 2, 2}}), 0u);
+  EXPECT_EQ(count_in({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 1}, {0, 1, 0}}), 0u);
+}
+
 TEST(SelfIntersections, CleanMeshesHaveNone) {
   for (const Mesh& mesh : {make_icosphere(4), make_torus(), make_box({1, 1, 1}, 12), make_grid_plane(20, 20, 0.1)})
     EXPECT_TRUE(self_intersections(mesh).empty());
