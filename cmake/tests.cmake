@@ -50,7 +50,7 @@ if(TARGET test_io AND TARGET evenmesh_vdb AND NOT EVENMESH_SANITIZE)
   add_dependencies(test_io evenmesh_vdb)
 endif()
 
-# The house: who includes whom, examples that compile.
+# The house: who includes whom.
 evenmesh_test(house)
 # The program, driven from outside.
 if(NOT EVENMESH_SANITIZE)
@@ -90,10 +90,10 @@ if(NOT EVENMESH_SANITIZE)
   add_dependencies(test_without_gl ${program})
 endif()
 
-# Somebody else's project: finds the installed package, builds against it, runs.
+# Somebody else's project: finds the installed package, builds the examples and README.md's C++ against it, runs them.
 if(NOT EVENMESH_SANITIZE)
   add_test(NAME house.consumer
-           COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DCONSUMER=${PROJECT_SOURCE_DIR}/tests/consumer
+           COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DSOURCE=${PROJECT_SOURCE_DIR}
                    -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER}
                    -P ${PROJECT_SOURCE_DIR}/tests/consumer/run.cmake)
   set_tests_properties(house.consumer PROPERTIES TIMEOUT 300)
