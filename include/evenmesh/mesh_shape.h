@@ -55,9 +55,9 @@ struct MeshOptions {
   TopologyRule topology = TopologyRule::keep;
   Placement placement = Placement::quadric;
   std::optional<std::size_t>
-      iterations{};             ///< evaluations of the energy per level at most, [0, 10000]; default by quality
-  double tolerance = 1e-4;      ///< stop when the mean seed moves less than this share of the seed spacing, (0, 1)
-  std::uint64_t seed = 1;       ///< of the random numbers
+      iterations{};         ///< evaluations of the energy per level at most, [0, 10000]; default by quality
+  double tolerance = 1e-4;  ///< stop when the mean seed moves less than this share of the seed spacing, (0, 1)
+  std::uint64_t seed = 1;   ///< of the random numbers
 };
 
 /// A promise that could not be kept, or something the user should know.

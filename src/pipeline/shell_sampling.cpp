@@ -219,8 +219,7 @@ void keep_shell(const Shell& shell, const Box& bounds, Artifacts& kept) {
   };
   for (std::size_t t = 0; t < shell.tiles().size(); ++t) {
     const Voxel corner = shell.tiles()[t].corner();
-    const bool in_cut =
-        kept.shell_cut && corner[across] / std::int32_t{tile_size} == layer / std::int32_t{tile_size};
+    const bool in_cut = kept.shell_cut && corner[across] / std::int32_t{tile_size} == layer / std::int32_t{tile_size};
     if (!kept.shell && !in_cut) continue;
     const NearestSite* nearest = shell.nearest(t).data();
     for_each_voxel(shell.tiles()[t], [&](unsigned x, unsigned y, unsigned z) {
