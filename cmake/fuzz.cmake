@@ -1,16 +1,12 @@
 # Fuzzers (libFuzzer, needs clang), one per fuzz/fuzz_NAME.cpp:
 #
-#   cmake -B build-fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DEVENMESH_FUZZ=ON
-#   ninja -C build-fuzz fuzzers
+#   cmake --preset fuzz
+#   cmake --build --preset fuzz --target fuzzers
 #   mkdir -p found && build-fuzz/fuzz_ply found tests/corpus/ply -max_total_time=300 -malloc_limit_mb=256
 if(EVENMESH_FUZZ)
   if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "EVENMESH_FUZZ needs clang: configure with -DCMAKE_CXX_COMPILER=clang++")
   endif()
-  # The rooms are instrumented too; -fsanitize=fuzzer brings main() and belongs to the fuzzers alone.
-  set(sanitize -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g)
-  target_compile_options(evenmesh_flags INTERFACE ${sanitize})
-  target_link_options(evenmesh_flags INTERFACE -fsanitize=address,undefined)
   add_custom_target(fuzzers)
   file(GLOB fuzz_sources CONFIGURE_DEPENDS fuzz/fuzz_*.cpp)
   if(NOT EVENMESH_GL)

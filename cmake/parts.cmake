@@ -27,22 +27,28 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/evenmeshConfig.cmake ${CMAKE_CURRENT_B
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/evenmesh)
 
 # What only some need, and slow to load (src/io/vdb/plugin.h).
-add_library(evenmesh_vdb MODULE src/io/vdb/plugin.cpp)
-set_target_properties(evenmesh_vdb PROPERTIES PREFIX "")
-target_include_directories(evenmesh_vdb PRIVATE include src)
-target_link_libraries(evenmesh_vdb PRIVATE evenmesh_flags openvdb Imath)
-install(TARGETS evenmesh_vdb DESTINATION ${CMAKE_INSTALL_LIBDIR}/evenmesh)
+if(EVENMESH_OPENVDB)
+  add_library(evenmesh_vdb MODULE src/io/vdb/plugin.cpp)
+  set_target_properties(evenmesh_vdb PROPERTIES PREFIX "")
+  target_include_directories(evenmesh_vdb PRIVATE include src)
+  target_link_libraries(evenmesh_vdb PRIVATE evenmesh_flags openvdb Imath)
+  install(TARGETS evenmesh_vdb DESTINATION ${CMAKE_INSTALL_LIBDIR}/evenmesh)
+endif()
 
 # The program. It sees the public headers only, like any other user of the library.
-find_package(CLI11 REQUIRED)
 file(GLOB sources CONFIGURE_DEPENDS apps/cli/*.cpp)
 add_executable(evenmesh ${sources})
 target_link_libraries(evenmesh PRIVATE evenmesh_flags evenmesh_library CLI11::CLI11 fmt::fmt
                                        nlohmann_json::nlohmann_json)
 target_compile_definitions(evenmesh PRIVATE EVENMESH_VERSION="${PROJECT_VERSION}")
 target_compile_options(evenmesh PRIVATE $<$<CONFIG:Release>:-O1>)  # of command lines: small and quickly built
-set_target_properties(evenmesh PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
-add_dependencies(evenmesh evenmesh_vdb)
+# Compiled as two files, since CLI11 takes longer than all of ours.
+set_target_properties(evenmesh PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}
+                      UNITY_BUILD ${EVENMESH_PRECOMPILE}
+                      UNITY_BUILD_BATCH_SIZE 9)
+if(TARGET evenmesh_vdb)
+  add_dependencies(evenmesh evenmesh_vdb)
+endif()
 install(TARGETS evenmesh)
 
 if(EVENMESH_TESTS)
@@ -50,15 +56,20 @@ if(EVENMESH_TESTS)
 endif()
 
 if(EVENMESH_BENCH)
-  find_package(benchmark REQUIRED)
   file(GLOB benches CONFIGURE_DEPENDS bench/*.cpp)
+  if(NOT EVENMESH_OPENVDB)
+    message(NOTICE "-- without OpenVDB: bench_shell, which runs beside it, is left out")
+    list(FILTER benches EXCLUDE REGEX bench_shell)
+  endif()
   foreach(source ${benches})
     get_filename_component(name ${source} NAME_WE)
     add_executable(${name} ${source})
     target_include_directories(${name} PRIVATE src)
     target_link_libraries(${name} PRIVATE evenmesh_flags evenmesh_library Eigen3::Eigen benchmark::benchmark_main)
   endforeach()
-  target_link_libraries(bench_shell PRIVATE openvdb Imath)  # runs beside ours
+  if(TARGET bench_shell)
+    target_link_libraries(bench_shell PRIVATE openvdb Imath)  # runs beside ours
+  endif()
 endif()
 
 file(GLOB examples CONFIGURE_DEPENDS examples/*.cpp)

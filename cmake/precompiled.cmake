@@ -2,8 +2,8 @@
 #
 #   evenmesh_precompile(TARGET GROUP)    GROUP: rooms or tests
 #
-# Every file still includes what it uses; the build with clang (fuzzers) goes without.
-option(EVENMESH_PRECOMPILE "precompile common headers" ON)
+# Every file still includes what it uses.
+option(EVENMESH_PRECOMPILE "precompile common headers, compile the program as few files" ON)
 
 set(precompiled_rooms <algorithm> <array> <bit> <cmath> <cstdint> <functional> <limits> <map> <memory> <numbers> <optional>
     <span> <string> <string_view> <unordered_map> <utility> <variant> <vector> <tbb/info.h> <tbb/parallel_for.h>
@@ -11,14 +11,18 @@ set(precompiled_rooms <algorithm> <array> <bit> <cmath> <cstdint> <functional> <
 set(precompiled_tests <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <map> <memory> <numbers> <optional>
     <set> <span> <sstream> <string> <variant> <vector> <gtest/gtest.h>)
 
-if(EVENMESH_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND EVENMESH_CCACHE)
+if(EVENMESH_PRECOMPILE AND EVENMESH_CCACHE)
   # What ccache needs to know of such headers (its manual, "Precompiled headers").
-  add_compile_options(-fpch-preprocess)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    add_compile_options(-fpch-preprocess)
+  else()
+    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")
+  endif()
   list(PREPEND CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros)
 endif()
 
 function(evenmesh_precompile target group)
-  if(NOT EVENMESH_PRECOMPILE OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  if(NOT EVENMESH_PRECOMPILE)
     return()
   endif()
   get_property(first GLOBAL PROPERTY evenmesh_precompiled_${group})

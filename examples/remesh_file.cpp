@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
     const std::size_t vertices = std::strtoull(argv[3], nullptr, 10);
     const auto result =
         evenmesh::mesh_shape(evenmesh::shape_from_mesh(input, argv[1]), {.vertices = vertices}, context);
-    for (const evenmesh::Notice& notice : result.report.notices) std::fprintf(stderr, "\n%s", notice.text.c_str());
+    for (const evenmesh::Finding& finding : result.report.findings)
+      std::fprintf(stderr, "\n%s", finding.sentence.c_str());
     const evenmesh::MeshDistance distance = evenmesh::compare_meshes(result.mesh, input, {}, context);
     std::printf("\nHausdorff distance to the input: %.3g of the diagonal\n",
                 distance.hausdorff() / distance.reference_diagonal);

@@ -145,7 +145,10 @@ Plan check(MeshingArguments& a, const Operation& operation) {
   plan.output = check_mesh_output(a.output, a.format);
   if (!a.report.empty()) check_output("--report", a.report);
   if (!a.json.empty()) check_output("--json", a.json);
-  if (!a.dump_shell.empty()) check_output("--dump-shell", a.dump_shell);
+  if (!a.dump_shell.empty()) {
+    check_output("--dump-shell", a.dump_shell);
+    require_vdb();
+  }
   if (!a.dump_dexels.empty()) check_output("--dump-dexels", a.dump_dexels);
   if (outputs_to_standard_output(a) > 1) {
     throw InvalidInput("only one of -o, --json, --report, --dump-shell and --dump-dexels can go to standard output");

@@ -86,7 +86,12 @@ bool is_dexel_file(std::string_view bytes);
 /// The bytes of an OpenVDB file with one grid of floats; its active voxels are those of the volume. They differ from
 /// call to call, since OpenVDB gives every file an identifier of its own; what they say does not.
 /// @throws InvalidInput  the side is not above 0, or there is not one value for each voxel
+/// @throws NotAvailable  as require_vdb does
 std::string serialize_vdb(const SparseVolume& volume);
+
+/// To know it before the work is done.
+/// @throws NotAvailable  there is no OpenVDB here, or evenmesh was built without it: what to install
+void require_vdb();
 
 /// All bytes of a file, pipe or device; "-" is standard input.
 /// @throws UnusableInput  one sentence with the file's name: it does not exist, is a directory, may not be read, …

@@ -51,13 +51,13 @@ Outcome run_program(const std::vector<std::string>& arguments, const std::filesy
   posix_spawn_file_actions_adddup2(&actions, out.ends[1], 1);
   posix_spawn_file_actions_adddup2(&actions, err.ends[1], 2);
   posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  std::vector<std::string> words{EVENMESH_PROGRAM};
+  std::vector<std::string> words{spawn.program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   pid_t child = -1;
-  EXPECT_EQ(posix_spawn(&child, EVENMESH_PROGRAM, &actions, nullptr, argv.data(), environ), 0);
+  EXPECT_EQ(posix_spawn(&child, spawn.program.c_str(), &actions, nullptr, argv.data(), environ), 0);
   posix_spawn_file_actions_destroy(&actions);
   for (const int end : {in.ends[0], out.ends[1], err.ends[1]}) close(end);
 

@@ -15,6 +15,7 @@ struct Outcome {
 };
 
 struct Spawn {
+  std::filesystem::path program = EVENMESH_PROGRAM;
   std::string input{};           ///< bytes for standard input
   int signal_after_ms = -1;      ///< send SIGINT after that long; -1: never
   bool hold_input_open = false;  ///< standard input never ends

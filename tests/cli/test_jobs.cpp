@@ -225,15 +225,6 @@ TEST_F(Jobs, MeshesOpenSheets) {
   EXPECT_EQ(Json::parse(info("s.ply")).at("euler"), 2);
 }
 
-TEST_F(Jobs, WritesTheShellAndItsCut) {
-  const Outcome outcome = run({"mesh", "gallery:sphere", "-n", "100", "--method", "shell", "-o", "s.ply",
-                               "--dump-shell", "s.vdb", "--report", "s.html", "--connect", "flood", "-q"});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(names(), (Words{"s.html", "s.ply", "s.vdb"}));
-  EXPECT_GT(read("s.vdb").size(), 10'000u);
-  EXPECT_NE(read("s.html").find("cut through the shell"), std::string::npos);
-}
-
 TEST_F(Jobs, DexelsGoOutAndComeIn) {
   ASSERT_EQ(run({"mesh", "gallery:torus", "-n", "300", "-o", "a.ply", "--dump-dexels", "a.tdx", "-q"}).status, 0);
   write("scene.json", R"({"difference": [{"dexels": "a.tdx"}, {"implicit": "-x"}]})");

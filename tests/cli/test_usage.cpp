@@ -99,7 +99,6 @@ TEST_F(Usage, WrongUsageIsStatus2) {
       {{"mesh", in, "-o", "x.ply", "--thickness", "21"}, "between 1 and 20"},
       {{"mesh", in, "-o", "x.ply", "--outliers", "-1"}, "--outliers"},
       {{"mesh", in, "-o", "x.ply", "--outliers", "3"}, "--outliers is for points"},
-      {{"mesh", in, "-o", "x.ply", "--dump-shell", "x.vdb"}, "add --method shell"},
       {{"mesh", in, "-o", "x.ply", "--start", "cold"}, "--start"},
       {{"mesh", in, "-o", "x.ply", "--connect", "glue"}, "complex, flood, fragments"},
       {{"mesh", in, "-o", "x.ply", "--connect", "fragments", "--max-cycle", "9"}, "between 3 and 8"},
@@ -241,6 +240,17 @@ TEST_F(Usage, AShapeWithoutSurfaceIsStatus3) {
     EXPECT_EQ(outcome.status, 3) << outcome.err;
     EXPECT_EQ(names(), Words{});
   }
+}
+
+TEST_F(Usage, WithoutTheOpenVdbPluginNoShellIsPromised) {
+  std::filesystem::create_directory(folder / "alone");
+  const std::filesystem::path program = folder / "alone" / "evenmesh";
+  std::filesystem::copy_file(EVENMESH_PROGRAM, program);
+  const Words words{"mesh", "gallery:sphere", "-n", "100", "--method", "shell", "-o", "x.ply", "--dump-shell", "x.vdb"};
+  const Outcome outcome = run(words, {.program = program});
+  EXPECT_EQ(outcome.status, 2);
+  expect_one_sentence(outcome, "apt install libopenvdb-dev libboost-dev");
+  EXPECT_EQ(names(), Words{"alone"}) << "it is said before the work is done";
 }
 
 }  // namespace

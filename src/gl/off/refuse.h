@@ -6,7 +6,9 @@
 namespace evenmesh::gl {
 
 [[noreturn]] inline void refuse() {
-  throw NotAvailable("evenmesh was built without OpenGL, which shaders need; build it with -DEVENMESH_GL=ON");
+  throw NotAvailable(
+      "evenmesh was built without OpenGL, which shaders need; install epoxy and EGL (Debian: apt install libepoxy-dev "
+      "libegl-dev) and build it with -DEVENMESH_GL=ON");
 }
 
 }  // namespace evenmesh::gl
