@@ -170,6 +170,7 @@ void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<co
   }
   // Few seeds lie here, in small groups: earlier ones, which were in balance, stay.
   std::vector<Vec3> around;
+  around.reserve(near_balls.size());
   for (const std::size_t s : near_balls) around.push_back(balls.outside(seeds[s]));
   const double least = 0.6 * edge;
   const PointHash index(around, least);
