@@ -50,8 +50,10 @@ std::size_t separate_umbrellas(Mesh& mesh, std::vector<std::uint32_t>& source) {
       std::uint32_t copy = v, last_umbrella = 0;
       edges.visit_umbrellas(v, [&](std::uint32_t h, std::uint32_t umbrella) {
         if (umbrella != last_umbrella) {
-          last_umbrella = umbrella, copy = static_cast<std::uint32_t>(mesh.vertices.size());
-          mesh.vertices.push_back(mesh.vertices[v]), source.push_back(source[v]);
+          last_umbrella = umbrella;
+          copy = static_cast<std::uint32_t>(mesh.vertices.size());
+          mesh.vertices.push_back(mesh.vertices[v]);
+          source.push_back(source[v]);
         }
         mesh.triangles[h / 3][h % 3] = copy;
       });
