@@ -4,8 +4,8 @@
 
 #include "geometry/primitives.h"
 #include "grid/coarsen.h"
-#include "grid/tri_dexel.h"
 #include "sample/sample.h"
+#include "sample/scan.h"
 
 namespace evenmesh {
 namespace {

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "evenmesh/density.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/points.h"
 
@@ -79,10 +80,6 @@ Shape shape_from_points(PointCloud points, std::string name = "points");
 /// @throws InvalidInput  with the column (1-based) and a caret under it
 Shape shape_from_expression(std::string_view expression, const std::map<std::string, double>& parameters = {},
                             const Box& bounds = {});
-
-/// How many vertices are wanted per area around a point, compared with elsewhere: above 0 and finite. Callable from
-/// several threads at once.
-using Density = std::function<double(const Vec3&)>;
 
 /// An expression in x, y, z as shape_from_expression() reads it, as a density.
 /// @throws InvalidInput  with the column (1-based) and a caret under it

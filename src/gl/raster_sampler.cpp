@@ -12,6 +12,7 @@
 #include "gl/raster_view.h"
 #include "sample/extra_directions.h"
 #include "sample/rays.h"
+#include "sample/scan.h"
 
 namespace evenmesh::gl {
 namespace {

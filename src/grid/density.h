@@ -1,8 +1,8 @@
 #pragma once
 /// Samples weighted so that balanced seeds are denser where they shall be.
 
+#include "evenmesh/density.h"
 #include "evenmesh/execution_context.h"
-#include "evenmesh/shape.h"
 #include "grid/sample_set.h"
 
 namespace evenmesh {

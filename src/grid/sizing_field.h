@@ -1,7 +1,7 @@
 #pragma once
 /// How long edges shall be.
 
-#include "evenmesh/shape.h"
+#include "evenmesh/density.h"
 
 namespace evenmesh {
 

@@ -1,7 +1,7 @@
 #include "pipeline/sampling.h"
 
 #include "grid/density.h"
-#include "grid/dexels.h"
+#include "sample/dexels.h"
 
 namespace evenmesh {
 namespace {

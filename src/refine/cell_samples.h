@@ -7,7 +7,7 @@
 
 #include "evenmesh/execution_context.h"
 #include "grid/sample_set.h"
-#include "refine/projector.h"
+#include "sample/projector.h"
 
 namespace evenmesh {
 

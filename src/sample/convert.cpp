@@ -8,8 +8,8 @@
 #include "evenmesh/error.h"
 #include "grid/blocks.h"
 #include "grid/morton.h"
-#include "grid/tri_dexel.h"
 #include "sample/field_parts.h"
+#include "sample/scan.h"
 
 namespace evenmesh {
 namespace {

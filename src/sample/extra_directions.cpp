@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "evenmesh/repair.h"
+#include "sample/scan.h"
 
 namespace evenmesh {
 namespace {

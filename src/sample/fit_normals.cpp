@@ -4,8 +4,8 @@
 
 #include "geometry/plane_fit.h"
 #include "grid/morton.h"
-#include "grid/tri_dexel.h"
 #include "sample/field_parts.h"
+#include "sample/scan.h"
 
 namespace evenmesh {
 namespace {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "evenmesh/shape.h"
 #include "grid/tri_dexel.h"
 
 namespace evenmesh {

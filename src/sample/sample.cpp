@@ -6,9 +6,9 @@
 #include "evenmesh/error.h"
 #include "evenmesh/solid.h"
 #include "grid/combine.h"
-#include "grid/tri_dexel.h"
 #include "sample/distance_field.h"
 #include "sample/field_parts.h"
+#include "sample/scan.h"
 #include "shape/ray_source.h"
 
 namespace evenmesh {

@@ -4,11 +4,12 @@
 // ToG 1990]. A shifted ray never meets an edge or a vertex, a shifted grid point never lies on a triangle, and since
 // the shift is the same for the three directions, so is the winding number that they find.
 
+#include "sample/scan.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "evenmesh/error.h"
-#include "grid/tri_dexel.h"
 #include "sample/extra_directions.h"
 #include "sample/lattice.h"
 #include "sample/rays.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "grid/tri_dexel.h"
 #include "sample/extra_directions.h"
+#include "sample/scan.h"
 
 namespace evenmesh {
 namespace {

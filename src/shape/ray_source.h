@@ -6,11 +6,9 @@
 #include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/solid.h"
+#include "grid/sample_set.h"
 
 namespace evenmesh {
-
-struct Grid;
-struct SampleSet;
 
 /// A solid known by where rays enter and leave it, or a surface that they meet. Callable from one thread at a time.
 class RaySource {

@@ -15,6 +15,7 @@
 #include "gl/raster_sampler.h"
 #include "gl/shaders.h"
 #include "sample/sample.h"
+#include "sample/scan.h"
 
 namespace evenmesh {
 namespace {

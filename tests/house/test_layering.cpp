@@ -19,14 +19,14 @@ using Names = std::set<std::string>;
 const fs::path root = EVENMESH_SOURCE_DIR;
 
 /// Rooms in the order of the pipeline; each sees itself and those before it.
-const std::vector<std::string> pipeline{"core",     "geometry", "shape",   "grid",     "sample", "band",
+const std::vector<std::string> pipeline{"core",     "geometry", "grid",    "shape",    "sample", "band",
                                         "features", "cvt",      "connect", "topology", "refine", "pipeline"};
 
 /// Rooms beside the pipeline, and what they see besides themselves.
 const std::map<std::string, Names> beside{
     {"measure", {"core", "geometry"}},
     {"io", {"core", "geometry", "shape"}},
-    {"gl", {"core", "geometry", "shape", "grid", "sample"}},
+    {"gl", {"core", "geometry", "grid", "shape", "sample"}},
     {"scene", {"core", "geometry", "shape", "io"}},
     {"jobs", {"core", "geometry", "shape"}},
     {"view", {"core", "geometry", "measure"}},
@@ -38,6 +38,7 @@ const std::map<std::string, std::string> public_headers{
     {"execution_context.h", "core"},
     {"findings.h", "geometry"},
     {"mesh.h", "geometry"},
+    {"density.h", "geometry"},
     {"shape.h", "shape"},
     {"measure.h", "measure"},
     {"io.h", "io"},

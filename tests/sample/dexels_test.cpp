@@ -1,4 +1,4 @@
-#include "grid/dexels.h"
+#include "sample/dexels.h"
 
 #include <gtest/gtest.h>
 
