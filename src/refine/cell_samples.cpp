@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t samples_per_cell = 20;  ///< where some have to do
 constexpr std::size_t piece = 1024;           ///< blocks of a task
+constexpr std::size_t grain = 4096;           ///< samples of a task
 
 }  // namespace
 
@@ -24,22 +25,25 @@ CellSamples::CellSamples(const SampleSet& samples, std::span<const std::uint32_t
   // Every stride-th sample.
   const std::size_t stride =
       std::max<std::size_t>(1, samples.size() / (samples_per_cell * std::max<std::size_t>(1, vertices)));
-  const std::size_t count = (samples.size() + stride - 1) / stride;
-  std::vector<std::uint32_t> vertex(count, no_group);
-  std::vector<Vec3> place(count);
-  parallel_for(context, samples.blocks.size(), piece, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b)
-      for (std::size_t s = (samples.blocks[b].begin + stride - 1) / stride; s * stride < samples.blocks[b].end; ++s)
-        if (const std::uint32_t v = vertex_of_sample[s * stride]; v < vertices) {
-          vertex[s] = v;
-          place[s] = position(b, s * stride);
-        }
+  const auto each = [&](const auto& visit) {
+    parallel_for(context, samples.blocks.size(), piece, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b)
+        for (std::size_t s = (samples.blocks[b].begin + stride - 1) / stride; s * stride < samples.blocks[b].end; ++s)
+          visit(b, s);
+    });
+  };
+  std::vector<std::uint32_t> of_sample((samples.size() + stride - 1) / stride, no_group);  // its vertex, then its place
+  each([&](std::size_t, std::size_t s) {
+    if (const std::uint32_t v = vertex_of_sample[s * stride]; v < vertices) of_sample[s] = v;
   });
-  Groups groups = group_by_key(context, count, vertices, [&](std::size_t s) { return vertex[s]; });
+  Groups groups = group_by_key(context, of_sample.size(), vertices, [&](std::size_t s) { return of_sample[s]; });
+  parallel_for(context, groups.items.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) of_sample[groups.items[i]] = static_cast<std::uint32_t>(i);
+  });
   start_ = std::move(groups.start);
   points_.resize(groups.items.size());
-  parallel_for(context, points_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points_[i] = place[groups.items[i]];
+  each([&](std::size_t b, std::size_t s) {
+    if (of_sample[s] != no_group) points_[of_sample[s]] = position(b, s * stride);
   });
   correct(points_);
 }

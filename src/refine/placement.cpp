@@ -4,9 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/sums.h"
+#include "core/parallel.h"
 #include "geometry/quadric.h"
-#include "core/grouping.h"
 
 namespace evenmesh {
 namespace {
@@ -48,14 +47,19 @@ CellShape solve(Quadric q, const Vec3& seed) {
   return {area, centroid, centroid + move};
 }
 
-std::vector<const Entry*> in_order(const std::vector<std::vector<Entry>>& lists, const ExecutionContext& context) {
-  std::vector<std::size_t> begin(lists.size() + 1, 0);
-  for (std::size_t c = 0; c < lists.size(); ++c) begin[c + 1] = begin[c] + lists[c].size();
-  std::vector<const Entry*> all(begin.back());
-  parallel_tasks(context, lists.size(), [&](std::size_t c) {
-    for (std::size_t i = 0; i < lists[c].size(); ++i) all[begin[c] + i] = &lists[c][i];
+/// What all blocks say of each label, in their order. Every thread reads all entries, and adds up those of its labels.
+std::vector<Quadric> sums_by_label(const std::vector<std::vector<Entry>>& lists, std::size_t labels,
+                                   const ExecutionContext& context) {
+  constexpr std::size_t max_ranges = 8;
+  const std::size_t ranges = std::min(threads_here(), max_ranges);
+  std::vector<Quadric> quadrics(labels);
+  parallel_tasks(context, ranges, [&](std::size_t range) {
+    const std::size_t first = labels * range / ranges, last = labels * (range + 1) / ranges;
+    for (const auto& list : lists)
+      for (const Entry& e : list)
+        if (e.label >= first && e.label < last) quadrics[e.label].add(e.quadric);
   });
-  return all;
+  return quadrics;
 }
 
 }  // namespace
@@ -68,15 +72,10 @@ std::vector<CellShape> cell_shapes(const SampleSet& samples, std::span<const std
     for (std::size_t b = c * chunk; b < std::min(samples.blocks.size(), (c + 1) * chunk); ++b)
       collect_block(samples, samples.blocks[b], labels, seeds, entries[c]);
   });
-  const std::vector<const Entry*> all = in_order(entries, context);
-  const Groups of_label = group_by_key(context, all.size(), seeds.size(), [&](std::size_t i) { return all[i]->label; });
+  const std::vector<Quadric> quadrics = sums_by_label(entries, seeds.size(), context);
   std::vector<CellShape> shapes(seeds.size());
   parallel_for(context, seeds.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t label = begin; label < end; ++label) {
-      Quadric sum;
-      for (const std::uint32_t i : of_label.of(label)) sum.add(all[i]->quadric);
-      shapes[label] = solve(sum, seeds[label]);
-    }
+    for (std::size_t i = begin; i < end; ++i) shapes[i] = solve(quadrics[i], seeds[i]);
   });
   return shapes;
 }
