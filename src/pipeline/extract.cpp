@@ -30,9 +30,10 @@ void make_vertices(const Tessellation& cells, const std::vector<Triangle>& trian
 }
 
 /// By vertex, before umbrellas were separated: whether it lies on the boundary.
-std::vector<char> boundary_vertices(const Mesh& mesh, const std::vector<std::uint32_t>& source) {
+std::vector<char> boundary_vertices(const Mesh& mesh, const std::vector<std::uint32_t>& source,
+                                    ExecutionContext& context) {
   std::vector<char> on_boundary(mesh.vertices.size(), 0);
-  const HalfEdges edges(mesh.triangles, mesh.vertices.size());
+  const HalfEdges edges(mesh.triangles, mesh.vertices.size(), context);
   for (std::size_t h = 0; h < 3 * mesh.triangles.size(); ++h) {
     if (edges.opposite(h) != HalfEdges::none) continue;
     const Triangle& t = mesh.triangles[h / 3];
@@ -116,7 +117,7 @@ Draft extract(const Tessellation& cells, const MeshOptions& options, ExecutionCo
   if (!closed || options.connect == Connect::fragments) {
     std::vector<std::uint32_t> source;
     draft.cuts = separate_umbrellas(draft.mesh, source);
-    if (!closed) find_boundary(cells, boundary_vertices(draft.mesh, source), draft);
+    if (!closed) find_boundary(cells, boundary_vertices(draft.mesh, source, context), draft);
   }
   const auto vertices = static_cast<double>(std::max<std::size_t>(4, draft.mesh.vertices.size()));
   draft.sizing = cells.sampling.sizing.with_mean(edge_length_of(cells.sampling.samples.total_area, vertices));

@@ -40,9 +40,9 @@ class Refinement {
       const std::size_t pairs = intersections(mesh).size();
       return {std::move(mesh), pairs};
     }
-    flip_to_delaunay(mesh, constraints);
+    flip_to_delaunay(mesh, constraints, context_);
     polish(mesh, projector_.get(), context_, constraints);
-    flip_to_delaunay(mesh, constraints);
+    flip_to_delaunay(mesh, constraints, context_);
     release_features();
     if (options_.placement == Placement::quadric) fit();
     finish_projection();
@@ -66,11 +66,11 @@ class Refinement {
   void release_features() {
     constexpr double sliver = 0.35;  // angles of 12°
     if (draft_.constraints.curve.empty()) return;
-    const auto slivers = triangles_below(draft_.mesh, sliver);
+    const auto slivers = triangles_below(draft_.mesh, sliver, context_);
     if (slivers.empty()) return;
     draft_.constraints.release(draft_.mesh, slivers);
     polish(draft_.mesh, projector_.get(), context_, draft_.constraints);
-    flip_to_delaunay(draft_.mesh, draft_.constraints);
+    flip_to_delaunay(draft_.mesh, draft_.constraints, context_);
   }
 
   void fit() {
