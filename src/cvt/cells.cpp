@@ -60,8 +60,9 @@ struct CellEvaluator::State {
     for (const SampleBlock& b : s.blocks) largest_block = std::max<std::size_t>(largest_block, b.end - b.begin);
     block_energy.resize(s.blocks.size());
     // The second moment of the footprints about their own centres, 2/5·R² each: constant, but part of F.
+    const std::span<const float> weight = s.weights();
     footprint_energy = ordered_sum(context, s.size(), [&](std::size_t i) {
-      return 0.4 * static_cast<double>(s.area[i]) * footprint * footprint / std::max(s.area[i], min_area);
+      return 0.4 * static_cast<double>(weight[i]) * footprint * footprint / std::max(s.area[i], min_area);
     });
   }
 
@@ -92,6 +93,7 @@ struct CellEvaluator::State {
                              .y = samples.y.data() + at,
                              .z = samples.z.data() + at,
                              .area = samples.area.data() + at,
+                             .weight = samples.weights().data() + at,
                              .footprint = footprint,
                              .min_area = min_area,
                              .samples = block.end - at,
@@ -115,11 +117,11 @@ const SampleSet& CellEvaluator::samples() const {
 void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
   State& state = *state_;
   state.lists.update(seeds, state.context);
-  const double area = state.samples.total_area;
-  // Masses add up to `area`, moments to less than area × extent: 2^61 leaves room for rounding.
+  // Masses add up to `total`, moments to less than total × extent: 2^61 leaves room for rounding.
+  const double total = state.samples.total_weight;
   const Grid& grid = state.samples.grid;
   const double extent = grid.spacing * std::max({grid.size[0], grid.size[1], grid.size[2]});
-  const double mass_unit = area * 0x1p-60, moment_unit = area * extent * 0x1p-60;
+  const double mass_unit = total * 0x1p-60, moment_unit = total * extent * 0x1p-60;
   for (FixedSums& f : state.fixed) f.cell.assign(seeds.size(), {});
   state.for_blocks(
       seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {

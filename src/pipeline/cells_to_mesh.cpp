@@ -186,7 +186,10 @@ class Cells {
     if (unconnected().empty()) return false;
     std::size_t dropped = 0;
     timer_.stage("connect", 0, [&] {
-      dropped = drop_small_components(samples_, samples_.total_area / static_cast<double>(count_), context_);
+      const double cell = samples_.total_area / static_cast<double>(count_);
+      RemainingSurface rest = drop_small_components(std::move(samples_), cell, context_);
+      samples_ = std::move(rest.samples);
+      dropped = rest.dropped;
       if (dropped > 0) evaluator_ = make_evaluator();
     });
     if (dropped == 0) return false;

@@ -202,7 +202,11 @@ class Job {
     samples_ = timer_.stage("sample", 0.1,
                             [&] { return sample_shape(shape_, make_grid(shape_.bounds, resolution), context_); });
     if (options_.fill_cavities)
-      report_.filled_cavities = timer_.stage("sample", 0, [&] { return fill_cavities(samples_, context_); });
+      timer_.stage("sample", 0, [&] {
+        RemainingSurface filled = fill_cavities(std::move(samples_), context_);
+        samples_ = std::move(filled.samples);
+        report_.filled_cavities = filled.dropped;
+      });
   }
 
   /// Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
@@ -221,7 +225,11 @@ class Job {
   void weigh(Fineness& fineness) {
     if (!options_.density) return;
     const auto weigh = [&] {
-      return timer_.stage("sample", 0, [&] { return weigh_by_density(samples_, options_.density, context_); });
+      return timer_.stage("sample", 0, [&] {
+        WeightedSamples weighted = weigh_by_density(std::move(samples_), options_.density, context_);
+        samples_ = std::move(weighted.samples);
+        return weighted.max_density;
+      });
     };
     const double finer = std::sqrt(std::min(16.0, weigh()));
     if (options_.resolution || finer < 1.1) return;
@@ -233,8 +241,10 @@ class Job {
   /// Thousands of pieces smaller than a cell would keep seeds busy in vain.
   void drop_small(std::size_t vertices) {
     timer_.stage("sample", 0, [&] {
-      report_.dropped_components =
-          drop_small_components(samples_, samples_.total_area / static_cast<double>(vertices), context_);
+      const double cell = samples_.total_area / static_cast<double>(vertices);
+      RemainingSurface rest = drop_small_components(std::move(samples_), cell, context_);
+      samples_ = std::move(rest.samples);
+      report_.dropped_components = rest.dropped;
     });
     if (samples_.size() < vertices)
       throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");

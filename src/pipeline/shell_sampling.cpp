@@ -144,12 +144,12 @@ SiteVoxels outer_border(const BandSurface& surface, const Sheets& outer, const V
 
 /// The inner side of a shell, turned around: the border of what the shell encloses.
 SampleSet enclosed_by(const BandSurface& surface, ExecutionContext& context) {
-  SampleSet samples = surface.samples;
-  const SurfaceComponents parts = surface_components(samples, context);
+  const SurfaceComponents parts = surface_components(surface.samples, context);
   std::vector<double> behind(parts.area.size(), 0);
-  for (std::uint32_t i = 0; i < samples.size(); ++i)
-    if (surface.facing[i] < 0) behind[parts.part[i]] += samples.area[i];
-  keep_samples(samples, [&](std::uint32_t i) { return behind[parts.part[i]] > 0.5 * parts.area[parts.part[i]]; });
+  for (std::uint32_t i = 0; i < surface.samples.size(); ++i)
+    if (surface.facing[i] < 0) behind[parts.part[i]] += surface.samples.area[i];
+  const auto is_inner = [&](std::uint32_t i) { return behind[parts.part[i]] > 0.5 * parts.area[parts.part[i]]; };
+  SampleSet samples = keep_samples(surface.samples, is_inner, context);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples.edge[i].bits ^= 1;
     samples.normal[i] = pack_normal(-unpack_normal(samples.normal[i]));
@@ -253,8 +253,7 @@ ShellSampling sample_sheets(const Shape& shape, const ShellPlan& plan, StageTime
     sampling.sheets = choose_sheets(sampling.surface, sites, min_area, context);
     for (std::uint32_t i = 0; i < sampling.sheets.chosen.size(); ++i)
       if (sampling.sheets.chosen[i]) sampling.in_surface.push_back(i);
-    sampling.samples = sampling.surface.samples;
-    keep_samples(sampling.samples, [&](std::uint32_t i) { return sampling.sheets.chosen[i] != 0; });
+    sampling.samples = gather(sampling.surface.samples, sampling.in_surface, context);
     sampling.on_surface = drawn_onto_surface(sampling.samples, sampling.in_surface, sampling.surface, sites, context);
   });
   if (sampling.samples.size() == 0)
@@ -309,8 +308,10 @@ ShellSampling sample_by_shell(const Shape& shape, const MeshOptions& options, St
     sampling = {};  // frees the memory first
     sampling = sample_sheets(shape, p, timer, report, kept, narrowest, context);
     if (!options.density) return sampling.samples.size();
-    weigh_by_density(sampling.on_surface, options.density, context);
-    return enough_for(weigh_by_density(sampling.samples, options.density, context), sampling.samples.size());
+    sampling.on_surface = weigh_by_density(std::move(sampling.on_surface), options.density, context).samples;
+    WeightedSamples weighted = weigh_by_density(std::move(sampling.samples), options.density, context);
+    sampling.samples = std::move(weighted.samples);
+    return enough_for(weighted.max_density, sampling.samples.size());
   });
   limit_seeds(report);
   if (narrowest && !shape.points()) report.notices.push_back(merge_notice(*narrowest, report));
@@ -330,7 +331,9 @@ SampleSet sample_wrapping(const Shape& shape, const MeshOptions& options, StageT
     samples = {};
     samples = sample_enclosed(shape, p, timer, report, kept, context);
     if (!options.density) return samples.size();
-    return enough_for(weigh_by_density(samples, options.density, context), samples.size());
+    WeightedSamples weighted = weigh_by_density(std::move(samples), options.density, context);
+    samples = std::move(weighted.samples);
+    return enough_for(weighted.max_density, samples.size());
   });
   limit_seeds(report);
   report.notices.push_back({false, fmt::format("the wrap lies about {:.3g} outside of the surface, and closes what is "
