@@ -32,7 +32,8 @@ struct NearestPair {
 /// the seeds, and agrees with its gradient wherever no third seed is as near (docs/cvt.md has the comparison with point
 /// samples, boxes and clipped polygons).
 ///
-/// Guarantee: same bits for any number of threads (sums are 64-bit integers). Cost: about 5 ns per sample and core.
+/// Guarantee: same bits for any number of threads (sums are 64-bit integers). Cost: about 5 ns per sample and core;
+/// memory O(seeds + blocks), and a few dozen KiB per thread.
 /// The discrete form of [Raster2Mesh §4.2].
 class CellEvaluator {
  public:
