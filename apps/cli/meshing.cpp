@@ -209,14 +209,15 @@ void move_to_gl(std::vector<Shape>& shapes, const std::string& device, Talk talk
     say("note", "--backend gl: the input has no expression and no shader; everything runs on the CPU");
 }
 
-bool tell_notices(const Report& report, Talk talk) {
+bool tell_findings(const Report& report, Talk talk) {
   bool kept = true;
-  for (const Notice& notice : report.notices) {
-    kept = kept && !notice.promise_broken;
-    if (notice.promise_broken) {
-      say("promise not kept", notice.text);
+  for (const Finding& finding : report.findings) {
+    const bool broken = finding.severity == Severity::broken_promise;
+    kept = kept && !broken;
+    if (broken) {
+      say("promise not kept", finding.sentence);
     } else if (talk != Talk::quiet) {
-      say("warning", notice.text);
+      say(finding.severity == Severity::note ? "note" : "warning", finding.sentence);
     }
   }
   return kept;
@@ -265,7 +266,7 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
     if (!a.dump_dexels.empty()) write_output(a.dump_dexels, serialize_dexels(*kept.dexels));
     if (!a.json.empty()) write_output(a.json, run_json(result.report, a, operation, plan.threads));
   }
-  const bool promises_kept = tell_notices(result.report, plan.talk);
+  const bool promises_kept = tell_findings(result.report, plan.talk);
   if (plan.talk != Talk::quiet) {
     const bool stdout_taken =
         a.output == "-" || a.json == "-" || a.report == "-" || a.dump_shell == "-" || a.dump_dexels == "-";

@@ -17,15 +17,21 @@ struct Vec3 {
   double& operator[](int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
   double operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
   Vec3& operator+=(const Vec3& b) {
-    x += b.x, y += b.y, z += b.z;
+    x += b.x;
+    y += b.y;
+    z += b.z;
     return *this;
   }
   Vec3& operator-=(const Vec3& b) {
-    x -= b.x, y -= b.y, z -= b.z;
+    x -= b.x;
+    y -= b.y;
+    z -= b.z;
     return *this;
   }
   Vec3& operator*=(double s) {
-    x *= s, y *= s, z *= s;
+    x *= s;
+    y *= s;
+    z *= s;
     return *this;
   }
   friend Vec3 operator+(Vec3 a, const Vec3& b) { return a += b; }
@@ -71,7 +77,10 @@ struct Box {
   double diagonal() const { return empty() ? 0.0 : norm(size()); }
   double longest_side() const { return empty() ? 0.0 : std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
   void add(const Vec3& p) {
-    for (int a = 0; a < 3; ++a) lo[a] = std::min(lo[a], p[a]), hi[a] = std::max(hi[a], p[a]);
+    for (int a = 0; a < 3; ++a) {
+      lo[a] = std::min(lo[a], p[a]);
+      hi[a] = std::max(hi[a], p[a]);
+    }
   }
   bool contains(const Vec3& p) const {
     return p.x >= lo.x && p.y >= lo.y && p.z >= lo.z && p.x <= hi.x && p.y <= hi.y && p.z <= hi.z;
@@ -81,12 +90,18 @@ struct Box {
 /// What two boxes have in common; empty where they lie apart.
 inline Box common(const Box& a, const Box& b) {
   Box box;
-  for (int i = 0; i < 3; ++i) box.lo[i] = std::max(a.lo[i], b.lo[i]), box.hi[i] = std::min(a.hi[i], b.hi[i]);
+  for (int i = 0; i < 3; ++i) {
+    box.lo[i] = std::max(a.lo[i], b.lo[i]);
+    box.hi[i] = std::min(a.hi[i], b.hi[i]);
+  }
   return box;
 }
 /// The least box around both, of which either may be empty.
 inline Box united(Box a, const Box& b) {
-  if (!b.empty()) a.add(b.lo), a.add(b.hi);
+  if (!b.empty()) {
+    a.add(b.lo);
+    a.add(b.hi);
+  }
   return a;
 }
 

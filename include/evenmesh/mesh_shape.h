@@ -10,6 +10,7 @@
 
 #include "evenmesh/dexels.h"
 #include "evenmesh/execution_context.h"
+#include "evenmesh/findings.h"
 #include "evenmesh/measure.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/shape.h"
@@ -60,12 +61,6 @@ struct MeshOptions {
   std::uint64_t seed = 1;   ///< of the random numbers
 };
 
-/// A promise that could not be kept, or something the user should know.
-struct Notice {
-  bool promise_broken = false;  ///< the command line then exits with status 4
-  std::string text;             ///< one sentence
-};
-
 /// What a run did.
 struct Report {
   MeshQuality quality;                 ///< of the mesh returned
@@ -81,6 +76,7 @@ struct Report {
   std::size_t evaluations = 0;
   std::size_t filled_cavities = 0;     ///< parts of surface within the solid, left out
   std::size_t disagreements = 0;       ///< grid points whose inside differed between ray directions, settled by vote
+  std::size_t unresolved = 0;          ///< crossings left out where a grid edge held several: thinner than a cell
   std::size_t dropped_components = 0;  ///< dust: pieces of surface smaller than a cell, left out
   std::size_t sites = 0;               ///< shell: voxels that the surface touches
   std::size_t shell_voxels = 0;        ///< shell: voxels within the thickness
@@ -96,7 +92,7 @@ struct Report {
   std::vector<double> cycle_shares;  ///< Connect::fragments: edges from cycles of 3, 4, … of all, in [0, 1]
   std::vector<std::pair<std::string, double>> seconds;  ///< wall time per stage, in order
   std::size_t peak_memory_bytes = 0;                    ///< of the process, so far
-  std::vector<Notice> notices;
+  std::vector<Finding> findings;  ///< in the order of the stages; a broken promise: the mesh is not what it should be
 };
 
 struct MeshResult {
@@ -116,9 +112,9 @@ struct Artifacts {
 
 /// Samples a shape's surface, spreads seeds evenly over it (centroidal Voronoi tessellation) and connects them.
 ///
-/// Guarantee: closed, two-manifold, oriented outward, without self-intersections; what could not be kept is a notice
-/// with promise_broken. The shell method gives a boundary where the surface is open. Same bytes for any number of
-/// threads. Cost: two cores take about 0.1 ms and 7 kB per vertex.
+/// Guarantee: closed, two-manifold, oriented outward, without self-intersections; what could not be kept is a finding
+/// of severity broken_promise. The shell method gives a boundary where the surface is open. Same bytes for any number
+/// of threads. Cost: two cores take about 0.1 ms and 7 kB per vertex.
 /// @param kept  may be null: nothing is kept
 /// @throws InvalidInput   options out of range
 /// @throws UnusableInput  no surface within the bounds, or their longest side is not between 1e-8 and 1e10

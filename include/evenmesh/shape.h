@@ -17,7 +17,7 @@
 namespace evenmesh {
 
 class Field;
-class Sampler;
+class RaySource;
 struct Compound;
 
 /// What is inside a triangle mesh: points around which it winds, or those that it winds around the right way, so that
@@ -32,7 +32,7 @@ struct Shape {
   /// cloud is a surface without an inside; a compound is a solid made of others (solid.h); a sampler is a solid that
   /// tells where rays meet it (raster.h).
   std::variant<std::shared_ptr<const Mesh>, std::shared_ptr<const Field>, std::shared_ptr<const PointCloud>,
-               std::shared_ptr<const Compound>, std::shared_ptr<const Sampler>>
+               std::shared_ptr<const Compound>, std::shared_ptr<const RaySource>>
       what;
   /// The solid leaves its bounds and is closed by them on purpose, or may be (then a cut is worth a warning).
   bool capped_by_bounds = false;
@@ -54,8 +54,8 @@ struct Shape {
     const auto* p = std::get_if<std::shared_ptr<const Compound>>(&what);
     return p ? p->get() : nullptr;
   }
-  const Sampler* sampler() const {
-    const auto* p = std::get_if<std::shared_ptr<const Sampler>>(&what);
+  const RaySource* ray_source() const {
+    const auto* p = std::get_if<std::shared_ptr<const RaySource>>(&what);
     return p ? p->get() : nullptr;
   }
 };

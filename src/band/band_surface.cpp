@@ -108,7 +108,8 @@ class Writer {
     }
     SampleSet& set = out_.samples;
     const Vec3 local = p + from + t * (out - from) - set.block_center(block);
-    set.x[at] = static_cast<float>(local.x), set.y[at] = static_cast<float>(local.y),
+    set.x[at] = static_cast<float>(local.x);
+    set.y[at] = static_cast<float>(local.y);
     set.z[at] = static_cast<float>(local.z);
     set.area[at] = static_cast<float>(sample_area(n, static_cast<int>(code.axis()), h));
     set.normal[at] = pack_normal(n);
@@ -144,7 +145,8 @@ BandSurface band_surface(const NarrowBand& band, const SiteVoxels& sites, Execut
     }
     if (total == 0) throw UnusableInput("the shell is empty: the input has no surface within the bounds");
     resize_samples(set, total, !sites.source.empty(), context);
-    surface.site.resize(total), surface.facing.resize(total);
+    surface.site.resize(total);
+    surface.facing.resize(total);
     const Writer writer(band, sites, surface);
     parallel_for(context, set.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
@@ -182,7 +184,8 @@ SampleSet drawn_onto_surface(SampleSet set, std::span<const std::uint32_t> index
           if (length > h) beside *= h / length;
         }
         const Vec3 local = p + beside - origin;
-        set.x[i] = static_cast<float>(local.x), set.y[i] = static_cast<float>(local.y),
+        set.x[i] = static_cast<float>(local.x);
+        set.y[i] = static_cast<float>(local.y);
         set.z[i] = static_cast<float>(local.z);
       }
     }

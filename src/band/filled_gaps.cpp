@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "core/parallel.h"
+#include "geometry/union_find.h"
 
 namespace evenmesh {
 namespace {
@@ -83,8 +83,10 @@ class Gaps {
   void add_face(const Voxel& at, const Voxel& next, NearestSite own, NearestSite other,
                 std::vector<Face>& faces) const {
     Face face{.at = at};
-    face.sites[0] = site_index(sites_, at, own), face.sites[1] = site_index(sites_, next, other);
-    face.ends[0] = own.site(at), face.ends[1] = other.site(next);
+    face.sites[0] = site_index(sites_, at, own);
+    face.sites[1] = site_index(sites_, next, other);
+    face.ends[0] = own.site(at);
+    face.ends[1] = other.site(next);
     const Vec3 way = point(face, 1) - point(face, 0);
     face.width = norm(way);
     if (face.width < min_width * band_.grid().side) return;
@@ -101,32 +103,28 @@ class Gaps {
 
   /// Faces grouped by voxels that touch, in the order of their first.
   static std::vector<std::vector<std::size_t>> connected(const std::vector<Face>& faces) {
-    std::vector<std::size_t> parent(faces.size());
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    const auto root = [&](std::size_t i) {
-      while (parent[i] != i) i = parent[i] = parent[parent[i]];
-      return i;
-    };
+    UnionFind sets(faces.size());
     const auto key = [](const Voxel& v) {
       return std::uint64_t(v[0]) << 42 | std::uint64_t(v[1]) << 21 | std::uint64_t(v[2]);
     };
-    std::unordered_map<std::uint64_t, std::size_t> first;
-    for (std::size_t i = 0; i < faces.size(); ++i) first.emplace(key(faces[i].at), i);
-    for (std::size_t i = 0; i < faces.size(); ++i)
+    std::unordered_map<std::uint64_t, std::uint32_t> first;
+    for (std::uint32_t i = 0; i < faces.size(); ++i) first.emplace(key(faces[i].at), i);
+    for (std::uint32_t i = 0; i < faces.size(); ++i)
       for (std::int32_t z = -1; z <= 1; ++z)
         for (std::int32_t y = -1; y <= 1; ++y)
           for (std::int32_t x = -1; x <= 1; ++x) {
             const Voxel& v = faces[i].at;
             const auto other = first.find(key({v[0] + x, v[1] + y, v[2] + z}));
-            if (other == first.end()) continue;
-            const std::size_t a = root(i), b = root(other->second);
-            parent[std::max(a, b)] = std::min(a, b);
+            if (other != first.end()) sets.unite(i, other->second);
           }
     std::vector<std::vector<std::size_t>> groups;
     std::vector<std::size_t> group(faces.size());
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      const std::size_t r = root(i);
-      if (r == i) group[i] = groups.size(), groups.emplace_back();
+    for (std::uint32_t i = 0; i < faces.size(); ++i) {
+      const std::uint32_t r = sets.find(i);
+      if (r == i) {
+        group[i] = groups.size();
+        groups.emplace_back();
+      }
       groups[group[r]].push_back(i);
     }
     std::erase_if(groups, [](const auto& g) { return g.size() < min_faces; });

@@ -1,10 +1,10 @@
 #include "band/moving_least_squares.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <optional>
 
 #include "band/site_parts.h"
+#include "geometry/plane_fit.h"
 
 namespace evenmesh {
 namespace {
@@ -42,7 +42,9 @@ class NearSites {
       const bool against = dot(s.normal, along) < 0;
       if (q <= 0 || (against && oriented_)) continue;
       const double w = q * q * q * q;
-      point += w * s.point, normal += (against ? -w : w) * s.normal, sum += w;
+      point += w * s.point;
+      normal += (against ? -w : w) * s.normal;
+      sum += w;
     }
     if (!(sum > 0) || !(norm(normal) > 0.2 * sum)) return std::nullopt;
     return Plane{point / sum, normalized(normal)};
@@ -98,8 +100,9 @@ class Bridge {
       if (std::abs(height) > touch || squared_norm(back - height * n) > lead_ * lead_) return;
       made.layers[z] |= VoxelTile::bit(x, y);
       const Vec3 foot = sparse_.grid.side * height * n;
-      part.x.push_back(static_cast<float>(foot.x)), part.y.push_back(static_cast<float>(foot.y)),
-          part.z.push_back(static_cast<float>(foot.z));
+      part.x.push_back(static_cast<float>(foot.x));
+      part.y.push_back(static_cast<float>(foot.y));
+      part.z.push_back(static_cast<float>(foot.z));
       part.normal.push_back(pack_normal(n));
     });
     made.count_layers();
@@ -124,26 +127,15 @@ void estimate_normals(SiteVoxels& sites, unsigned radius, ExecutionContext& cont
     return sites.grid.center(v) + Vec3{sites.x[*at], sites.y[*at], sites.z[*at]};
   };
   const auto normal_at = [&](const Voxel& v, const Vec3& p) {
-    Vec3 mean;
-    double count = 0;
-    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+    PlaneFit fit;
     for (std::int32_t z = -r; z <= r; ++z)
       for (std::int32_t y = -r; y <= r; ++y)
         for (std::int32_t x = -r; x <= r; ++x) {
           if (x * x + y * y + z * z > r * r) continue;
           const auto q = point_of({v[0] + x, v[1] + y, v[2] + z});
-          if (!q) continue;
-          const Vec3 d = (*q - p) / sites.grid.side;
-          mean += d, count += 1;
-          for (int a = 0; a < 3; ++a)
-            for (int b = 0; b < 3; ++b) moments(a, b) += d[a] * d[b];
+          if (q) fit.add((*q - p) / sites.grid.side);
         }
-    if (count < 3) return Vec3{0, 0, 1};
-    mean = mean / count;
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) moments(a, b) = moments(a, b) / count - mean[a] * mean[b];
-    const Eigen::Vector3d n = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().col(0);
-    return Vec3{n[0], n[1], n[2]};
+    return fit.count() < 3 ? Vec3{0, 0, 1} : fit.plane().normal;
   };
   with_threads(context, [&] {
     parallel_for(context, sites.tiles.size(), 16, [&](std::size_t begin, std::size_t end) {

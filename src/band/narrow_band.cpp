@@ -96,7 +96,8 @@ void fill_window(const SiteVoxels& sites, const Voxel& corner, std::int32_t reac
   std::fill_n(window.rows.begin(), span * span, 0);
   std::array<std::int32_t, 3> first{}, last{};
   for (std::size_t a = 0; a < 3; ++a) {
-    first[a] = (corner[a] - reach) >> 3, last[a] = (corner[a] + block - 1 + reach) >> 3;
+    first[a] = (corner[a] - reach) >> 3;
+    last[a] = (corner[a] + block - 1 + reach) >> 3;
     window.size[a] = std::min(band_block, sites.grid.size[a] - static_cast<unsigned>(corner[a]));
   }
   for (std::int32_t k = first[2]; k <= last[2]; ++k)
@@ -168,11 +169,14 @@ NarrowBand build_narrow_band(const SiteVoxels& sites, unsigned reach, ExecutionC
                                    std::min(blocks_per_piece, blocks.size() - p * blocks_per_piece));
     });
     NarrowBand band;
-    band.grid_ = sites.grid, band.reach_ = reach;
+    band.grid_ = sites.grid;
+    band.reach_ = reach;
     std::size_t count = 0;
     for (const Piece& piece : pieces) count += piece.tiles.size();
     std::vector<VoxelTile> tiles;
-    tiles.reserve(count), band.nearest_.reserve(count), band.pieces_.reserve(pieces.size());
+    tiles.reserve(count);
+    band.nearest_.reserve(count);
+    band.pieces_.reserve(pieces.size());
     for (Piece& piece : pieces) {
       tiles.insert(tiles.end(), piece.tiles.begin(), piece.tiles.end());
       for (const std::size_t start : piece.start) band.nearest_.push_back(piece.nearest.get() + start);

@@ -90,7 +90,10 @@ void transform(const BandSteps& steps, const BandWindow& window, BandBlockOut& o
       filled[y] |= std::uint64_t{1} << z;
     }
   }
-  for (BandTileOut& tile : out) tile.layers = {}, tile.count = 0;
+  for (BandTileOut& tile : out) {
+    tile.layers = {};
+    tile.count = 0;
+  }
   for (unsigned x = 0; x < side; ++x) limits[x] = x < window.size[0] ? (steps.reach * steps.reach + 1) << 18 : 0;
   for (unsigned z = 0; z < window.size[2]; ++z)
     for (unsigned y = 0; y < window.size[1]; ++y) {
@@ -124,7 +127,10 @@ BandSteps::BandSteps(unsigned d) : reach(d) {
   const auto key = [](std::int32_t by, unsigned shift) {
     return static_cast<std::uint32_t>((by * by << 18) + by * (1 << shift));
   };
-  for (std::int32_t by = -r; by <= r; ++by) along_y[at(by + r)] = key(by, 6), along_z[at(by + r)] = key(by, 12);
+  for (std::int32_t by = -r; by <= r; ++by) {
+    along_y[at(by + r)] = key(by, 6);
+    along_z[at(by + r)] = key(by, 12);
+  }
   constexpr std::uint32_t zero = 32u << 12 | 32u << 6 | 32u;
   for (std::int32_t b = 0; b < std::int32_t(band_block) + 2 * r; ++b)
     for (std::int32_t x = 0; x < std::int32_t(band_block); ++x) {

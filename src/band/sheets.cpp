@@ -207,7 +207,10 @@ class Chooser {
   bool is_one_sided(std::span<const Index> list) const {
     if (!needs_cut_[part_[list.front()]]) return false;
     std::size_t both = 0, tried = 0;
-    for (std::size_t i = 0; i < list.size(); i += stride) ++tried, both += is_seen_across(list[i], sheet_);
+    for (std::size_t i = 0; i < list.size(); i += stride) {
+      ++tried;
+      both += is_seen_across(list[i], sheet_);
+    }
     return both > tried / 10;
   }
   /// Of a one-sided sheet, what lies on one side when that side is carried on from site to site.
@@ -259,7 +262,10 @@ class Chooser {
     if (result_.cut == 0 && std::find(needs_cut_.begin(), needs_cut_.end(), 1) == needs_cut_.end()) return;
     std::vector<std::size_t> around(sheets_.size(), 0), chosen(sheets_.size(), 0);
     for_links([&](Index s, Index t) {
-      if (is_rim(s) && !is_rim(t)) ++around[sheet_[s]], chosen[sheet_[s]] += result_.chosen[t] != 0;
+      if (is_rim(s) && !is_rim(t)) {
+        ++around[sheet_[s]];
+        chosen[sheet_[s]] += result_.chosen[t] != 0;
+      }
     });
     for (const Sheet& sheet : sheets_)
       if (sheet.rim && around[sheet.id] > 0 &&
@@ -279,7 +285,8 @@ class Chooser {
         for (int i = 0; i < n; ++i) {
           const Index s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
           if (sheet_[s] == sheet_[t] && result_.chosen[s] == result_.chosen[t]) continue;
-          visit(s, t), visit(t, s);
+          visit(s, t);
+          visit(t, s);
         }
       });
     }

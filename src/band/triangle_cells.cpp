@@ -57,7 +57,8 @@ void TriangleCells::cut_slabs(std::size_t axis, std::size_t across, const Add& a
 }
 
 void TriangleCells::set(const LatticeTriangle& corners, int bits, const CellBox& within) {
-  corners_ = corners, bits_ = bits;
+  corners_ = corners;
+  bits_ = bits;
   box_ = cells_of_box(corners, bits);
   const bool one_cell = box_[0].first == box_[0].last && box_[1].first == box_[1].last && box_[2].first == box_[2].last;
   for (std::size_t a = 0; a < 3; ++a) box_[a] = box_[a].cut(within[a]);
@@ -68,7 +69,8 @@ void TriangleCells::set(const LatticeTriangle& corners, int bits, const CellBox&
     return;
   }
   set_plane();
-  rows_.clear(), columns_.clear();
+  rows_.clear();
+  columns_.clear();
   if (box_[0].empty() || box_[1].empty() || box_[2].empty()) {
     box_[v_] = {};
     return;
@@ -80,7 +82,10 @@ void TriangleCells::set(const LatticeTriangle& corners, int bits, const CellBox&
   cut_slabs(v_, w_, [&](std::int32_t v, const CellRange& w) { row(v).w.add(w); });
   cut_slabs(u_, w_,
             [&](std::int32_t u, const CellRange& w) { columns_[static_cast<std::size_t>(u - box_[u_].first)].add(w); });
-  for (Row& r : rows_) r.u = r.u.cut(box_[u_]), r.w = r.w.cut(box_[w_]);
+  for (Row& r : rows_) {
+    r.u = r.u.cut(box_[u_]);
+    r.w = r.w.cut(box_[w_]);
+  }
 }
 
 void TriangleCells::set_plane() {
@@ -92,12 +97,15 @@ void TriangleCells::set_plane() {
   w_ = 2;
   for (const std::size_t axis : {1, 0})
     if (std::abs(normal_[axis]) > std::abs(normal_[w_])) w_ = axis;
-  u_ = w_ == 0 ? 1 : 0, v_ = w_ == 2 ? 1 : 2;
+  u_ = w_ == 0 ? 1 : 0;
+  v_ = w_ == 2 ? 1 : 2;
   has_plane_ = normal_[w_] != 0;
   if (!has_plane_) return;
   const double unit = std::ldexp(1.0, -bits_), steepest = static_cast<double>(normal_[w_]);
-  slope_u_ = -static_cast<double>(normal_[u_]) / steepest, slope_v_ = -static_cast<double>(normal_[v_]) / steepest;
-  anchor_u_ = a[u_] * unit, anchor_v_ = a[v_] * unit;
+  slope_u_ = -static_cast<double>(normal_[u_]) / steepest;
+  slope_v_ = -static_cast<double>(normal_[v_]) / steepest;
+  anchor_u_ = a[u_] * unit;
+  anchor_v_ = a[v_] * unit;
   low_ = a[w_] * unit + std::min(slope_u_, 0.0) + std::min(slope_v_, 0.0);
   high_ = a[w_] * unit + std::max(slope_u_, 0.0) + std::max(slope_v_, 0.0);
   // Slopes are at most 1, so nothing exceeds a few times the largest coordinate.

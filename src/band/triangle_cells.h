@@ -18,7 +18,10 @@ struct CellRange {
 
   bool empty() const { return first > last; }
   std::size_t count() const { return empty() ? 0 : static_cast<std::size_t>(last - first) + 1; }
-  void add(const CellRange& r) { first = std::min(first, r.first), last = std::max(last, r.last); }
+  void add(const CellRange& r) {
+    first = std::min(first, r.first);
+    last = std::max(last, r.last);
+  }
   CellRange cut(const CellRange& r) const { return {std::max(first, r.first), std::min(last, r.last)}; }
 };
 using CellBox = std::array<CellRange, 3>;

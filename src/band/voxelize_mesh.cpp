@@ -169,9 +169,14 @@ class BrickVoxelizer {
     for (const std::uint64_t key : brick.keys) add(static_cast<std::uint32_t>(key), brick.corner, box);
     const auto h = static_cast<float>(snapped_.grid.side);
     const std::size_t first = part.x.size(), size = first + sites_.size();
-    part.x.resize(size), part.y.resize(size), part.z.resize(size), part.source.resize(size);
+    part.x.resize(size);
+    part.y.resize(size);
+    part.z.resize(size);
+    part.source.resize(size);
     sites_.finish(brick.corner, part, [&](std::size_t i, const NearestSurface& site) {
-      part.x[first + i] = h * site.x, part.y[first + i] = h * site.y, part.z[first + i] = h * site.z;
+      part.x[first + i] = h * site.x;
+      part.y[first + i] = h * site.y;
+      part.z[first + i] = h * site.z;
       part.source[first + i] = site.source;
     });
   }

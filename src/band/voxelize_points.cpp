@@ -19,7 +19,11 @@ struct MeanSite {
   Vec3 points, normals;  // points in voxels, relative to the voxel's centre
   std::uint32_t count = 0;
 
-  void add(const Vec3& point, const Vec3& normal) { points += point, normals += normal, ++count; }
+  void add(const Vec3& point, const Vec3& normal) {
+    points += point;
+    normals += normal;
+    ++count;
+  }
 };
 
 /// Where a point lies, in voxels from the grid's origin.
@@ -42,7 +46,10 @@ MeanSite* site_of(BrickSites<MeanSite>& sites, const Voxel& v, const Voxel& corn
 
 void finish(BrickSites<MeanSite>& sites, const Voxel& corner, double side, bool with_normals, SitePart& part) {
   const std::size_t first = part.x.size(), size = first + sites.size();
-  part.x.resize(size), part.y.resize(size), part.z.resize(size), part.normal.resize(with_normals ? size : 0);
+  part.x.resize(size);
+  part.y.resize(size);
+  part.z.resize(size);
+  part.normal.resize(with_normals ? size : 0);
   sites.finish(corner, part, [&](std::size_t i, const MeanSite& site) {
     const Vec3 mean = site.points * (side / site.count);
     part.x[first + i] = static_cast<float>(mean.x);
@@ -104,7 +111,8 @@ EdgeCells cells_around(const SampleBlock& block, EdgeCode edge) {
   };
   const std::size_t axis = edge.axis();
   EdgeCells cells{{at(0, edge.i()), at(1, edge.j()), at(2, edge.k())}, axis == 0 ? 1u : 0u, axis == 2 ? 1u : 2u};
-  --cells.first[cells.p], --cells.first[cells.q];
+  --cells.first[cells.p];
+  --cells.first[cells.q];
   return cells;
 }
 
@@ -137,7 +145,8 @@ void add_block(const SampleSet& samples, const SampleBlock& block, const VoxelGr
     const Vec3 normal = unpack_normal(samples.normal[s]);
     for (unsigned c = 0; c < 4; ++c) {
       Voxel v = cells.first;
-      v[cells.p] += c & 1, v[cells.q] += c >> 1;
+      v[cells.p] += c & 1;
+      v[cells.q] += c >> 1;
       for (std::int32_t& i : v) i += static_cast<std::int32_t>(margin);
       if (!grid.contains(v)) continue;
       if (MeanSite* site = site_of(sites, v, corner)) site->add(point - center_in_voxels(v), normal);

@@ -70,8 +70,11 @@ void cut_ears(std::vector<std::uint32_t>& polygon, std::span<const Vec3> positio
       const std::uint32_t before = polygon[(i + n - 1) % n], after = polygon[(i + 1) % n];
       const double length = squared_norm(positions[after] - positions[before]);
       const bool is_taken = taken.has(before, after);
-      if (is_taken < ear_taken || (is_taken == ear_taken && length < shortest))
-        shortest = length, ear = i, ear_taken = is_taken;
+      if (is_taken < ear_taken || (is_taken == ear_taken && length < shortest)) {
+        shortest = length;
+        ear = i;
+        ear_taken = is_taken;
+      }
     }
     const std::uint32_t before = polygon[(ear + n - 1) % n], after = polygon[(ear + 1) % n];
     taken.add(before, after);
@@ -91,7 +94,10 @@ DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& pol
     bool repeated = false;
     for (std::size_t i = 0; i < polygon.size(); ++i)
       for (std::size_t j = i + 1; j < polygon.size(); ++j)
-        if (polygon[i] == polygon[j]) repeated = true, mesh.defects.push_back({polygon[i], polygon[i]});
+        if (polygon[i] == polygon[j]) {
+          repeated = true;
+          mesh.defects.push_back({polygon[i], polygon[i]});
+        }
     if (!repeated) cut_ears(polygon, positions, taken, mesh.triangles);
   });
   const auto bad = manifold_defects(mesh.triangles, positions.size(), open);

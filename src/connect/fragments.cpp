@@ -231,8 +231,10 @@ class Orientation {
     std::sort(sides_.begin(), sides_.end());
     across_.assign(3 * triangles.size(), none);
     for (std::size_t i = 0; i < sides_.size(); i += run_at(i))
-      if (run_at(i) == 2)
-        across_[sides_[i].second] = sides_[i + 1].second, across_[sides_[i + 1].second] = sides_[i].second;
+      if (run_at(i) == 2) {
+        across_[sides_[i].second] = sides_[i + 1].second;
+        across_[sides_[i + 1].second] = sides_[i].second;
+      }
   }
 
   /// Returns the edges whose two triangles cannot agree: the surface has one side only.
@@ -326,7 +328,8 @@ Fragments connect_fragments(const SampleSet& samples, std::span<const Vec3> seed
   defects.insert(defects.end(), torn.begin(), torn.end());
   std::sort(defects.begin(), defects.end());
   defects.erase(std::unique(defects.begin(), defects.end()), defects.end());
-  result.delaunay = std::move(graph.delaunay), result.candidates = std::move(graph.candidates);
+  result.delaunay = std::move(graph.delaunay);
+  result.candidates = std::move(graph.candidates);
   return result;
 }
 

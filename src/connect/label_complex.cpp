@@ -54,7 +54,7 @@ class Complex {
     });
   }
 
-  std::vector<Index>& parent() { return sets_.parent(); }
+  UnionFind& sets() { return sets_.sets(); }
   /// One sample of every connected piece of a label, ascending.
   const std::vector<Index>& roots() const { return roots_; }
   const std::vector<CubeBrick>& bricks() const { return bricks_; }
@@ -119,7 +119,8 @@ class Complex {
     std::vector<std::vector<Index>> of_piece((samples_.size() + piece - 1) / piece);
     parallel_tasks(context_, of_piece.size(), [&](std::size_t p) {
       for (std::size_t i = p * piece; i < std::min(samples_.size(), (p + 1) * piece); ++i)
-        if (sets_.parent()[i] == i && labels_[i] != no_label) of_piece[p].push_back(static_cast<Index>(i));
+        if (labels_[i] != no_label && sets_.sets().is_root(static_cast<Index>(i)))
+          of_piece[p].push_back(static_cast<Index>(i));
     });
     for (const auto& list : of_piece) roots_.insert(roots_.end(), list.begin(), list.end());
   }
@@ -146,7 +147,7 @@ struct Piece {
 /// held the nearest.
 std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels, Complex& complex,
                                           const std::vector<Index>& piece_count, std::span<const Vec3> fixed) {
-  auto& parent = complex.parent();
+  UnionFind& sets = complex.sets();
   std::vector<Piece> pieces;
   std::vector<std::pair<Index, Index>> piece_of_root;  // (root, index into pieces), ascending
   for (const Index root : complex.roots())
@@ -159,7 +160,7 @@ std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::v
     const Vec3 center = samples.block_center(block);
     for (Index i = block.begin; i < block.end; ++i) {
       if (labels[i] == no_label || piece_count[labels[i]] <= 1) continue;
-      const Index root = find_root(parent, i);
+      const Index root = sets.find(i);
       Piece& piece =
           pieces[std::lower_bound(piece_of_root.begin(), piece_of_root.end(), std::pair{root, Index{0}})->second];
       const Vec3 place = center + Vec3{samples.x[i], samples.y[i], samples.z[i]};
@@ -215,14 +216,14 @@ class Splitter {
     if (tiny.empty()) return;
     std::sort(tiny.begin(), tiny.end());
     std::vector<char> block_tiny(samples_.blocks.size(), 0);
-    auto& parent = complex_.parent();
+    UnionFind& sets = complex_.sets();
     const auto is_tiny = [&](Index root) {
       const auto it = std::lower_bound(tiny.begin(), tiny.end(), std::pair{root, Index{0}});
       return it != tiny.end() && it->first == root;
     };
     for (std::size_t b = 0; b < samples_.blocks.size(); ++b)
       for (Index i = samples_.blocks[b].begin; i < samples_.blocks[b].end && !block_tiny[b]; ++i)
-        block_tiny[b] = labels_[i] != no_label && piece_count[labels_[i]] > 1 && is_tiny(find_root(parent, i));
+        block_tiny[b] = labels_[i] != no_label && piece_count[labels_[i]] > 1 && is_tiny(sets.find(i));
     std::vector<char> brick_dirty(complex_.bricks().size(), 0);
     std::vector<std::pair<Index, Index>> links;  // (tiny root, other root)
     CubeWalker walker(samples_);
@@ -231,7 +232,7 @@ class Splitter {
       if (!brick_dirty[b]) continue;
       walker.walk(complex_.bricks()[b], [&](const Index* loop, int n) {
         for (int i = 0; i < n; ++i) {
-          const Index r = find_root(parent, loop[i]), s = find_root(parent, loop[(i + 1) % n]);
+          const Index r = sets.find(loop[i]), s = sets.find(loop[(i + 1) % n]);
           if (r == s || labels_[r] == no_label || labels_[s] == no_label) continue;
           if (is_tiny(r) && !is_tiny(s)) links.push_back({r, s});
           if (is_tiny(s) && !is_tiny(r)) links.push_back({s, r});
@@ -251,7 +252,10 @@ class Splitter {
       Index best_root = 0;
       for (auto it = first; it != links.end() && it->first == root;) {
         const auto next = std::upper_bound(it, links.end(), *it);
-        if (next - it > best) best = next - it, best_root = it->second;
+        if (next - it > best) {
+          best = next - it;
+          best_root = it->second;
+        }
         it = next;
       }
       if (best > 0)
@@ -264,10 +268,10 @@ class Splitter {
 
   void relabel(const std::vector<Index>& piece_count, std::vector<std::pair<Index, Index>>& label_of_root) {
     std::sort(label_of_root.begin(), label_of_root.end());
-    auto& parent = complex_.parent();
+    UnionFind& sets = complex_.sets();
     for (std::size_t i = 0; i < labels_.size(); ++i) {
       if (labels_[i] == no_label || piece_count[labels_[i]] <= 1) continue;
-      const Index root = find_root(parent, static_cast<Index>(i));
+      const Index root = sets.find(static_cast<Index>(i));
       const auto it = std::lower_bound(label_of_root.begin(), label_of_root.end(), std::pair{root, Index{0}});
       if (it != label_of_root.end() && it->first == root) new_labels_.push_back({static_cast<Index>(i), it->second});
     }

@@ -4,65 +4,13 @@
 #include <cmath>
 
 #include "cvt/candidates.h"
+#include "geometry/point_hash.h"
 
 namespace evenmesh {
 namespace {
 
 using Index = std::uint32_t;
 using Pair = std::pair<Index, Index>;
-
-/// Seeds in the cells of a cubic grid, sorted by cell, those of a row one behind the other.
-class SeedRows {
- public:
-  SeedRows(std::span<const Vec3> seeds, double spacing) : seeds_(seeds) {
-    Box box;
-    for (const Vec3& s : seeds) box.add(s);
-    origin_ = box.lo;
-    cell_ = std::max(spacing, box.longest_side() / (1 << 20) + 1e-300);
-    for (Index s = 0; s < seeds.size(); ++s) {
-      const auto c = cell_at(seeds[s]);
-      sorted_.push_back({key(c[0], c[1], c[2]), s});
-    }
-    std::sort(sorted_.begin(), sorted_.end());
-  }
-
-  /// Puts the seeds within `reach` of p, with their squared distances from it, into `found`, unsorted.
-  void collect(const Vec3& p, double reach, std::vector<std::pair<double, Index>>& found) const {
-    found.clear();
-    const auto offer = [&](Index s) {
-      if (const double d = squared_norm(seeds_[s] - p); d <= reach * reach) found.push_back({d, s});
-    };
-    const auto lo = cell_at(p - Vec3{reach, reach, reach}), hi = cell_at(p + Vec3{reach, reach, reach});
-    const auto rows = static_cast<std::size_t>((hi[1] - lo[1] + 1) * (hi[2] - lo[2] + 1));
-    if (rows > seeds_.size()) {
-      for (Index s = 0; s < seeds_.size(); ++s) offer(s);
-      return;
-    }
-    for (std::int64_t k = lo[2]; k <= hi[2]; ++k)
-      for (std::int64_t j = lo[1]; j <= hi[1]; ++j) {
-        const std::int64_t last = key(hi[0], j, k);
-        for (auto it = std::lower_bound(sorted_.begin(), sorted_.end(), std::pair{key(lo[0], j, k), Index{0}});
-             it != sorted_.end() && it->first <= last; ++it)
-          offer(it->second);
-      }
-  }
-  double cell() const { return cell_; }
-
- private:
-  std::array<std::int64_t, 3> cell_at(const Vec3& p) const {
-    std::array<std::int64_t, 3> c{};
-    for (int a = 0; a < 3; ++a)
-      c[static_cast<std::size_t>(a)] =
-          static_cast<std::int64_t>(std::floor(std::clamp((p[a] - origin_[a]) / cell_, 0.0, (1 << 20) + 1.0)));
-    return c;
-  }
-  static std::int64_t key(std::int64_t i, std::int64_t j, std::int64_t k) { return k << 42 | j << 21 | i; }
-
-  std::span<const Vec3> seeds_;
-  Vec3 origin_;
-  double cell_ = 1;
-  std::vector<std::pair<std::int64_t, Index>> sorted_;
-};
 
 template <typename Item>
 void sort_unique(std::vector<Item>& items) {
@@ -91,13 +39,19 @@ class Witness {
     delaunay.push_back(ordered(a, b));
     if (edges < 3) return;
     const Index c = near[2].second;
-    candidates.push_back(ordered(a, c)), candidates.push_back(ordered(b, c));
+    candidates.push_back(ordered(a, c));
+    candidates.push_back(ordered(b, c));
     std::array<Index, 3> corner{a, b, c};
     std::sort(corner.begin(), corner.end());
     corners.push_back(corner);
   }
 
-  void tidy() { sort_unique(delaunay), sort_unique(candidates), sort_unique(corners), sort_unique(groups); }
+  void tidy() {
+    sort_unique(delaunay);
+    sort_unique(candidates);
+    sort_unique(corners);
+    sort_unique(groups);
+  }
 
  private:
   void add_group(const std::vector<std::pair<double, Index>>& near) {
@@ -112,17 +66,22 @@ class Witness {
 /// For one block after the other, the seeds that can be within ε of the nearest of one of its samples.
 class Listener {
  public:
-  Listener(const SampleSet& samples, std::span<const Vec3> seeds, const SeedRows& rows, double margin)
-      : samples_(samples), seeds_(seeds), rows_(rows), margin_(margin) {}
+  Listener(const SampleSet& samples, const PointHash& seeds, double spacing, double margin)
+      : samples_(samples), seeds_(seeds), spacing_(spacing), margin_(margin) {}
 
   void hear_block(const SampleBlock& block, const BlockBox& box, Witness& witness, std::vector<Index>& nearest) {
     const Vec3 origin = samples_.block_center(block);
     collect(origin + Vec3{box.center[0], box.center[1], box.center[2]}, norm({box.half[0], box.half[1], box.half[2]}));
     const std::size_t count = found_.size();
-    x_.resize(count), y_.resize(count), z_.resize(count), squared_.resize(count);
+    x_.resize(count);
+    y_.resize(count);
+    z_.resize(count);
+    squared_.resize(count);
     for (std::size_t c = 0; c < count; ++c) {
       const Vec3 at = seeds_[found_[c].second] - origin;
-      x_[c] = at.x, y_[c] = at.y, z_[c] = at.z;
+      x_[c] = at.x;
+      y_[c] = at.y;
+      z_[c] = at.z;
     }
     for (Index i = block.begin; i < block.end; ++i) {
       const double least = measure({samples_.x[i], samples_.y[i], samples_.z[i]});
@@ -140,14 +99,20 @@ class Listener {
  private:
   /// No point within `radius` of the centre is farther from its nearest seed than the centre is, plus `radius`.
   void collect(const Vec3& center, double radius) {
-    double reach = radius + margin_ + rows_.cell();
-    for (rows_.collect(center, reach, found_); found_.empty(); rows_.collect(center, reach, found_)) reach *= 2;
+    double reach = radius + margin_ + spacing_;
+    for (find(center, reach); found_.empty(); find(center, reach)) reach *= 2;
     const double least = std::sqrt(std::min_element(found_.begin(), found_.end())->first);
     const double needed = (least + 2 * radius + margin_) * (1 + 1e-6);
     if (needed > reach)
-      rows_.collect(center, needed, found_);
+      find(center, needed);
     else
       std::erase_if(found_, [&](const auto& entry) { return entry.first > needed * needed; });
+  }
+
+  /// The seeds within `reach` of p, with their squared distances from it.
+  void find(const Vec3& p, double reach) {
+    found_.clear();
+    seeds_.near(p, reach, [&](Index s) { found_.push_back({squared_norm(seeds_[s] - p), s}); });
   }
 
   /// Squared distances from p to all seeds found, and the least of them.
@@ -162,9 +127,8 @@ class Listener {
   }
 
   const SampleSet& samples_;
-  std::span<const Vec3> seeds_;
-  const SeedRows& rows_;
-  double margin_;
+  const PointHash& seeds_;
+  double spacing_, margin_;
   std::vector<std::pair<double, Index>> found_, near_;
   std::vector<double> x_, y_, z_, squared_;  ///< of the seeds found, from the block's centre
 };
@@ -181,25 +145,32 @@ SeedGraph seed_graph(const SampleSet& samples, std::span<const Vec3> seeds, doub
   SeedGraph graph;
   graph.nearest.assign(samples.size(), 0);
   if (seeds.empty()) return graph;
-  const SeedRows rows(seeds, std::sqrt(samples.total_area / static_cast<double>(seeds.size())));
+  Box box;
+  for (const Vec3& s : seeds) box.add(s);
+  const double spacing = std::max(std::sqrt(samples.total_area / static_cast<double>(seeds.size())),
+                                  box.longest_side() / (1 << 20) + 1e-300);
+  const PointHash index(seeds, spacing, box.lo);
   const std::vector<BlockBox> boxes = block_boxes(samples, context);
   std::vector<Witness> witnesses((samples.blocks.size() + chunk - 1) / chunk);
   parallel_tasks(context, witnesses.size(), [&](std::size_t c) {
-    Listener listener(samples, seeds, rows, margin);
+    Listener listener(samples, index, spacing, margin);
     for (std::size_t b = c * chunk; b < std::min(samples.blocks.size(), (c + 1) * chunk); ++b)
       listener.hear_block(samples.blocks[b], boxes[b], witnesses[c], graph.nearest);
     witnesses[c].tidy();
   });
   Witness all;
   for (const Witness& w : witnesses) {
-    append(all.delaunay, w.delaunay), append(all.candidates, w.candidates);
-    append(all.corners, w.corners), append(all.groups, w.groups);
+    append(all.delaunay, w.delaunay);
+    append(all.candidates, w.candidates);
+    append(all.corners, w.corners);
+    append(all.groups, w.groups);
   }
   all.tidy();
   graph.delaunay = std::move(all.delaunay);
   std::set_difference(all.candidates.begin(), all.candidates.end(), graph.delaunay.begin(), graph.delaunay.end(),
                       std::back_inserter(graph.candidates));
-  graph.corners = std::move(all.corners), graph.groups = std::move(all.groups);
+  graph.corners = std::move(all.corners);
+  graph.groups = std::move(all.groups);
   return graph;
 }
 

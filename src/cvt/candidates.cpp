@@ -72,7 +72,10 @@ class ChunkSeeds {
   /// Collects the seeds within `reach` of a box.
   void collect(Box box, double reach) {
     reach_ = reach;
-    for (int a = 0; a < 3; ++a) box.lo[a] -= reach, box.hi[a] += reach;
+    for (int a = 0; a < 3; ++a) {
+      box.lo[a] -= reach;
+      box.hi[a] += reach;
+    }
     near_.clear();
     grid_.visit_box(box, [&](std::uint32_t seed, const Vec3& position) {
       if (box.contains(position)) near_.push_back(seed);
@@ -84,7 +87,9 @@ class ChunkSeeds {
     for (std::size_t i = 0; i < near_.size(); ++i) {
       const Vec3 p = seeds_[near_[i]] - origin_;
       near_margin_[i] = margins_[near_[i]];
-      near_x_[i] = static_cast<float>(p.x), near_y_[i] = static_cast<float>(p.y), near_z_[i] = static_cast<float>(p.z);
+      near_x_[i] = static_cast<float>(p.x);
+      near_y_[i] = static_cast<float>(p.y);
+      near_z_[i] = static_cast<float>(p.z);
     }
   }
 
@@ -105,8 +110,11 @@ class ChunkSeeds {
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t hit = hits_[i];
       const Vec3 offset = seeds_[near_[hit]] - block_center;
-      x_[i] = static_cast<float>(offset.x), y_[i] = static_cast<float>(offset.y), z_[i] = static_cast<float>(offset.z);
-      margin_[i] = near_margin_[hit], seed_[i] = near_[hit];
+      x_[i] = static_cast<float>(offset.x);
+      y_[i] = static_cast<float>(offset.y);
+      z_[i] = static_cast<float>(offset.z);
+      margin_[i] = near_margin_[hit];
+      seed_[i] = near_[hit];
     }
     const std::size_t kept = keep_near_seeds(box, margin_.data(), x_.data(), y_.data(), z_.data(), seed_.data(), count);
     std::sort(seed_.begin(), seed_.begin() + static_cast<std::ptrdiff_t>(kept));  // ties go to the lower index
@@ -162,7 +170,10 @@ float CandidateLists::margin(std::size_t seed, const Vec3& at, double spacing) c
 
 void CandidateLists::update(std::span<const Vec3> seeds, const ExecutionContext& context) {
   const double spacing = std::sqrt(samples_.total_area / static_cast<double>(seeds.size()));
-  if (last_seeds_.size() != seeds.size()) seeds_at_build_.clear(), last_seeds_.clear();
+  if (last_seeds_.size() != seeds.size()) {
+    seeds_at_build_.clear();
+    last_seeds_.clear();
+  }
   std::vector<std::uint32_t> strayed;
   for (std::size_t i = 0; i < seeds_at_build_.size(); ++i)
     if (!is_valid_for(i, seeds[i])) strayed.push_back(static_cast<std::uint32_t>(i));
@@ -193,7 +204,8 @@ void CandidateLists::build_around(std::span<const std::uint32_t> strayed, std::s
                                   const ExecutionContext& context) {
   std::vector<Vec3> places;
   for (const std::uint32_t i : strayed) {
-    places.push_back(seeds_at_build_[i]), places.push_back(seeds[i]);
+    places.push_back(seeds_at_build_[i]);
+    places.push_back(seeds[i]);
     margins_[i] = std::min(margin(i, seeds[i], spacing), largest_margin_);
     seeds_at_build_[i] = seeds[i];
   }
@@ -238,7 +250,8 @@ void CandidateLists::build_chunk(std::size_t c, const std::array<bool, chunk>& s
     offsets_[b] = before;
     counts_[b] = static_cast<std::uint32_t>(list.size()) - before;
     const Vec3 reach = double(reach_[b]) * Vec3{1, 1, 1};
-    region.add(center(b) - reach), region.add(center(b) + reach);
+    region.add(center(b) - reach);
+    region.add(center(b) + reach);
   }
   chunks_[c] = {std::move(list), region};
 }

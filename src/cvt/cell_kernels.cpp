@@ -209,7 +209,10 @@ std::size_t KeepNearSeeds(const BlockBox& box, const float* margin, float* x, fl
   }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    x[kept] = x[i], y[kept] = y[i], z[kept] = z[i], seed[kept] = seed[i];
+    x[kept] = x[i];
+    y[kept] = y[i];
+    z[kept] = z[i];
+    seed[kept] = seed[i];
     kept += dominated[i] < 2 ? 1 : 0;
   }
   return kept;

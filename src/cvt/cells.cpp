@@ -82,7 +82,9 @@ struct Workspace {
   BatchSums cells;
 
   Workspace(std::size_t largest_block) {
-    first.resize(largest_block), second.resize(largest_block), distance.resize(largest_block);
+    first.resize(largest_block);
+    second.resize(largest_block);
+    distance.resize(largest_block);
   }
 };
 
@@ -132,7 +134,8 @@ struct CellEvaluator::State {
         float *sx = workspace->seeds.data(), *sy = sx + capacity, *sz = sy + capacity;
         for (std::size_t c = 0; c < listed.size(); ++c) {
           const Vec3 offset = seeds[listed[c]] - center;
-          sx[c] = static_cast<float>(offset.x), sy[c] = static_cast<float>(offset.y),
+          sx[c] = static_cast<float>(offset.x);
+          sy[c] = static_cast<float>(offset.y);
           sz[c] = static_cast<float>(offset.z);
         }
         std::size_t n = listed.size();

@@ -85,76 +85,111 @@ void limit_steps(Vectors& steps, double limit) {
   }
 }
 
+/// Steps downhill until they are short, or evaluations are used up.
+class Descent {
+ public:
+  Descent(CellEvaluator& evaluator, Vectors& seeds, const OptimizeOptions& options, ExecutionContext& context)
+      : evaluator_(evaluator),
+        seeds_(seeds),
+        options_(options),
+        context_(context),
+        area_(evaluator.samples().total_area),
+        gradient_(seeds.size()),
+        step_(seeds.size()),
+        trial_(seeds.size()),
+        trial_gradient_(seeds.size()),
+        inverse_diagonal_(seeds.size()) {}
+
+  OptimizeResult run() {
+    evaluate(seeds_, sums_);
+    find_gradient(sums_, gradient_);
+    while (!used_up()) {
+      const double slope = find_step();
+      if (mean_step() < options_.tolerance * spacing()) break;
+      if (try_step(slope)) {
+        take_step();
+      } else {
+        if (history_.empty()) break;
+        history_.clear();
+      }
+    }
+    result_.energy = sums_.energy;
+    return std::move(result_);
+  }
+
+ private:
+  std::size_t count() const { return seeds_.size(); }
+  double spacing() const { return std::sqrt(area_ / static_cast<double>(count())); }
+  bool used_up() const { return result_.ratios.size() >= options_.evaluations; }
+
+  void evaluate(const Vectors& at, CellSums& out) {
+    context_.throw_if_cancelled();
+    evaluator_.evaluate(at, out);
+    result_.ratios.push_back(energy_ratio(out.energy, count(), area_));
+  }
+  void find_gradient(const CellSums& sums, Vectors& gradient) const {
+    algebra_.each(count(), [&](std::size_t i) { gradient[i] = i < options_.fixed ? Vec3{} : -2.0 * sums.moment[i]; });
+  }
+
+  /// @return its product with the gradient
+  double find_step() {
+    const double small_mass = 0.1 * area_ / static_cast<double>(count());
+    algebra_.each(count(), [&](std::size_t i) { inverse_diagonal_[i] = 0.5 / std::max(sums_.mass[i], small_mass); });
+    if (options_.lloyd) history_.clear();
+    step_ = history_.direction(gradient_, inverse_diagonal_);
+    limit_steps(step_, 0.5 * spacing());
+    const double slope = algebra_.dot_all(step_, gradient_);
+    if (slope < 0) return slope;
+    history_.clear();  // not a descent direction: Lloyd's step is one
+    step_ = history_.direction(gradient_, inverse_diagonal_);
+    return algebra_.dot_all(step_, gradient_);
+  }
+  double mean_step() const {
+    return ordered_sum(context_, count(), [&](std::size_t i) { return norm(step_[i]); }) / static_cast<double>(count());
+  }
+
+  /// Shorter and shorter steps; whether one of them leads down far enough.
+  bool try_step(double slope) {
+    double factor = 1;
+    for (int attempt = 0; attempt < 4 && !used_up(); ++attempt, factor *= 0.35) {
+      algebra_.each(count(), [&](std::size_t i) { trial_[i] = seeds_[i] + factor * step_[i]; });
+      evaluate(trial_, trial_sums_);
+      if (options_.lloyd || trial_sums_.energy <= sums_.energy + 1e-4 * factor * slope) return true;
+    }
+    return false;
+  }
+  void take_step() {
+    find_gradient(trial_sums_, trial_gradient_);
+    Vectors moved(count()), change(count());
+    algebra_.each(count(), [&](std::size_t i) {
+      moved[i] = trial_[i] - seeds_[i];
+      change[i] = trial_gradient_[i] - gradient_[i];
+    });
+    history_.add(std::move(moved), std::move(change));
+    seeds_.swap(trial_);
+    gradient_.swap(trial_gradient_);
+    std::swap(sums_, trial_sums_);
+  }
+
+  CellEvaluator& evaluator_;
+  Vectors& seeds_;
+  const OptimizeOptions& options_;
+  ExecutionContext& context_;
+  const double area_;
+  const Algebra algebra_{context_};
+  History history_{algebra_};
+  OptimizeResult result_;
+  CellSums sums_, trial_sums_;
+  Vectors gradient_, step_, trial_, trial_gradient_;
+  std::vector<double> inverse_diagonal_;
+};
+
 }  // namespace
 
 OptimizeResult optimize(CellEvaluator& evaluator, std::vector<Vec3>& seeds, const OptimizeOptions& options,
                         ExecutionContext& context) {
-  const std::size_t k = seeds.size();
-  const double area = evaluator.samples().total_area;
-  const double spacing = std::sqrt(area / static_cast<double>(k));
-  const double small_mass = 0.1 * area / static_cast<double>(k);
-  const Algebra algebra(context);
-  History history(algebra);
-  OptimizeResult result;
-  if (options.evaluations == 0) return result;
-
-  CellSums sums, trial_sums;
-  const auto evaluate = [&](const Vectors& at, CellSums& out) {
-    context.throw_if_cancelled();
-    evaluator.evaluate(at, out);
-    result.ratios.push_back(energy_ratio(out.energy, k, area));
-  };
-  evaluate(seeds, sums);
-  Vectors gradient(k), step(k), trial(k), trial_gradient(k);
-  std::vector<double> inverse_diagonal(k);
-  const auto gradient_of = [&](const CellSums& s, Vectors& g) {
-    algebra.each(k, [&](std::size_t i) { g[i] = i < options.fixed ? Vec3{} : -2.0 * s.moment[i]; });
-  };
-  gradient_of(sums, gradient);
-
-  while (result.ratios.size() < options.evaluations) {
-    algebra.each(k, [&](std::size_t i) { inverse_diagonal[i] = 0.5 / std::max(sums.mass[i], small_mass); });
-    if (options.lloyd) history.clear();
-    step = history.direction(gradient, inverse_diagonal);
-    limit_steps(step, 0.5 * spacing);
-    double slope = algebra.dot_all(step, gradient);
-    if (!(slope < 0)) {  // not a descent direction: Lloyd's step is one
-      history.clear();
-      step = history.direction(gradient, inverse_diagonal);
-      slope = algebra.dot_all(step, gradient);
-    }
-    const double mean_step =
-        ordered_sum(context, k, [&](std::size_t i) { return norm(step[i]); }) / static_cast<double>(k);
-    if (mean_step < options.tolerance * spacing) break;
-
-    double factor = 1;
-    bool accepted = false;
-    for (int attempt = 0; attempt < 4 && result.ratios.size() < options.evaluations; ++attempt, factor *= 0.35) {
-      algebra.each(k, [&](std::size_t i) { trial[i] = seeds[i] + factor * step[i]; });
-      evaluate(trial, trial_sums);
-      if (options.lloyd || trial_sums.energy <= sums.energy + 1e-4 * factor * slope) {
-        accepted = true;
-        break;
-      }
-    }
-    if (!accepted) {
-      if (history.empty()) break;
-      history.clear();
-      continue;
-    }
-    gradient_of(trial_sums, trial_gradient);
-    Vectors moved(k), change(k);
-    algebra.each(k, [&](std::size_t i) {
-      moved[i] = trial[i] - seeds[i];
-      change[i] = trial_gradient[i] - gradient[i];
-    });
-    history.add(std::move(moved), std::move(change));
-    seeds.swap(trial);
-    gradient.swap(trial_gradient);
-    std::swap(sums, trial_sums);
-  }
-  result.energy = sums.energy;
-  return result;
+  if (options.evaluations == 0) return {};
+  return Descent(evaluator, seeds, options, context).run();
 }
 
 }  // namespace evenmesh

@@ -127,7 +127,10 @@ class Balance {
       for (std::size_t s = fixed_; s < shaken.size(); ++s)
         shaken[s] += amplitude * Vec3{random.gaussian(), random.gaussian(), random.gaussian()};
       const double energy = relax(evaluator, shaken, evaluations(true));
-      if (energy < best) best = energy, seeds_.swap(shaken);
+      if (energy < best) {
+        best = energy;
+        seeds_.swap(shaken);
+      }
     }
   }
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "core/random.h"
+#include "geometry/point_hash.h"
 
 namespace evenmesh {
 namespace {
@@ -115,36 +116,17 @@ std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, 
   // Radius of a disk in the densest packing of `count` disks on the area.
   const double radius = std::sqrt(samples.total_area / (2 * std::sqrt(3.0) * static_cast<double>(count)));
   const double reach = 2 * radius, side = reach * *std::max_element(size.begin(), size.end());
-  const auto cell_of = [&](const Vec3& p) {
-    const Vec3 q = (p - samples.grid.origin) / side;
-    return std::array<std::int64_t, 3>{static_cast<std::int64_t>(std::floor(q.x)),
-                                       static_cast<std::int64_t>(std::floor(q.y)),
-                                       static_cast<std::int64_t>(std::floor(q.z))};
-  };
-  const auto key = [](std::int64_t i, std::int64_t j, std::int64_t k) {
-    return (i + 1) << 42 | (j + 1) << 21 | (k + 1);
-  };
-  std::unordered_map<std::int64_t, std::vector<std::uint32_t>> cells;
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    const auto c = cell_of(points[p]);
-    cells[key(c[0], c[1], c[2])].push_back(static_cast<std::uint32_t>(p));
-  }
+  const PointHash near(points, side, samples.grid.origin);
   std::vector<std::vector<std::pair<std::uint32_t, double>>> neighbours(many);
   std::vector<double> crowding(many, 0);
-  for (std::size_t p = 0; p < many; ++p) {
-    const auto c = cell_of(points[p]);
-    for (int d = 0; d < 27; ++d) {
-      const auto it = cells.find(key(c[0] + d % 3 - 1, c[1] + d / 3 % 3 - 1, c[2] + d / 9 - 1));
-      if (it == cells.end()) continue;
-      for (const std::uint32_t q : it->second) {
-        const double distance = norm(points[p] - points[q]), reach_here = reach * 0.5 * (size[p] + size[q]);
-        if (q == p || distance >= reach_here) continue;
-        const double weight = std::pow(1 - distance / reach_here, 8);
-        neighbours[p].push_back({q, weight});
-        crowding[p] += weight;
-      }
-    }
-  }
+  for (std::size_t p = 0; p < many; ++p)
+    near.near(points[p], side, [&](std::uint32_t q) {
+      const double distance = norm(points[p] - points[q]), reach_here = reach * 0.5 * (size[p] + size[q]);
+      if (q == p || distance >= reach_here) return;
+      const double weight = std::pow(1 - distance / reach_here, 8);
+      neighbours[p].push_back({q, weight});
+      crowding[p] += weight;
+    });
   std::priority_queue<std::pair<double, std::uint32_t>> queue;
   for (std::size_t p = 0; p < many; ++p) queue.push({crowding[p], static_cast<std::uint32_t>(p)});
   std::vector<char> removed(many, 0);
@@ -152,7 +134,8 @@ std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, 
     const auto [weight, p] = queue.top();
     queue.pop();
     if (removed[p] || weight != crowding[p]) continue;
-    removed[p] = 1, --left;
+    removed[p] = 1;
+    --left;
     for (const auto& [q, w] : neighbours[p])
       if (!removed[q]) queue.push({crowding[q] -= w, q});
   }
@@ -232,20 +215,9 @@ void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_
 
 std::vector<Vec3> fixed_and_others(std::span<const Vec3> fixed, const std::vector<Vec3>& seeds, std::size_t first,
                                    double reach) {
-  const auto key = [&](const Vec3& p, int i, int j, int k) {
-    const auto at = [&](double x, int d) {
-      return static_cast<std::uint64_t>(std::int64_t(std::floor(x / reach)) + d);
-    };
-    return (at(p.x, i) * 0x9e3779b97f4a7c15ull + at(p.y, j)) * 0xbf58476d1ce4e5b9ull + at(p.z, k);
-  };
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells;
-  for (std::uint32_t h = 0; h < fixed.size(); ++h) cells[key(fixed[h], 0, 0, 0)].push_back(h);
+  const PointHash near(fixed, reach);
   const auto is_near = [&](const Vec3& p) {
-    for (int d = 0; d < 27; ++d)
-      if (const auto it = cells.find(key(p, d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1)); it != cells.end())
-        for (const std::uint32_t h : it->second)
-          if (squared_norm(fixed[h] - p) < reach * reach) return true;
-    return false;
+    return near.near(p, reach, [&](std::uint32_t h) { return squared_norm(fixed[h] - p) < reach * reach; });
   };
   std::vector<Vec3> all(fixed.begin(), fixed.end());
   for (std::size_t s = first; s < seeds.size(); ++s)

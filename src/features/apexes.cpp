@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <unordered_set>
 
+#include "geometry/point_hash.h"
 #include "grid/morton.h"
 
 namespace evenmesh {
@@ -25,8 +25,8 @@ class TipFinder {
   /// The tip that is near to p, if there is one.
   std::optional<Vec3> near(Vec3 p) const {
     for (int step = 0; step < 3; ++step) {
-      PlaneQuadric planes;
-      each_around(p, [&](const Vec3& x, const Vec3& n) { planes.add(x - p, n); });
+      Quadric planes;
+      each_around(p, [&](const Vec3& x, const Vec3& n) { planes.add_plane(x - p, n); });
       if (planes.rank() < 3) return {};  // a crease at most, or nothing
       const Vec3 move = planes.minimum(3, 3);
       if (!(norm(move) < around * edge_)) return {};
@@ -41,7 +41,9 @@ class TipFinder {
     Vec3 sum;
     each_around(p, [&](const Vec3& x, const Vec3& n) {
       const double off = dot(n, p - x);
-      count += 1, squares += off * off, sum += n;
+      count += 1;
+      squares += off * off;
+      sum += n;
       nearest = std::min(nearest, norm(x - p));
     });
     return count > 0 && nearest < max_missing * samples_.grid.spacing && norm(sum) < max_mean_ * count &&
@@ -82,48 +84,23 @@ class TipFinder {
   double edge_;
 };
 
-/// The surroundings of points, by cells of space.
-class Surroundings {
- public:
-  explicit Surroundings(double side) : side_(side) {}
-  /// Points nearer to p than the cells' side are near, and some up to twice as far.
-  void add(const Vec3& p) {
-    const Cell home = cell(p);
-    if (home == last_) return;
-    last_ = home;
-    for (int d = 0; d < 27; ++d)
-      cells_.insert(key({home[0] + d % 3 - 1, home[1] + d / 3 % 3 - 1, home[2] + d / 9 - 1}));
-  }
-  bool near(const Vec3& p) const { return cells_.contains(key(cell(p))); }
-
- private:
-  using Cell = std::array<std::int64_t, 3>;
-  Cell cell(const Vec3& p) const {
-    return {std::int64_t(std::floor(p.x / side_)), std::int64_t(std::floor(p.y / side_)),
-            std::int64_t(std::floor(p.z / side_))};
-  }
-  static std::uint64_t key(const Cell& c) {
-    constexpr std::int64_t middle = 1 << 20;
-    return std::uint64_t(c[0] + middle) << 42 ^ std::uint64_t(c[1] + middle) << 21 ^ std::uint64_t(c[2] + middle);
-  }
-
-  double side_;
-  Cell last_{INT64_MIN, 0, 0};
-  std::unordered_set<std::uint64_t> cells_;
-};
+/// Whether points lie in the cell of p or beside it: all nearer than a cell's side, and some up to twice as far.
+bool is_beside(const PointHash& points, const Vec3& p, double side) {
+  const Vec3 reach{side, side, side};
+  return points.in_cells({p - reach, p + reach}, [](std::uint32_t) { return true; });
+}
 
 }  // namespace
 
 std::vector<Vec3> find_apexes(const SampleSet& samples, std::span<const FeatureNode> nodes,
                               const FeatureCurves& features, double angle, double edge, ExecutionContext& context) {
-  const Vec3 origin = samples.grid.origin;
-  Surroundings taken(apart * edge);
+  PointHash taken(apart * edge, samples.grid.origin);
   for (const FeatureCurve& curve : features.curves)
-    for (const Vec3& p : curve.points) taken.add(p - origin);
+    for (const Vec3& p : curve.points) taken.add(p);
   std::vector<Vec3> candidates;
   for (const FeatureNode& node : nodes) {
-    if (taken.near(node.place - origin)) continue;
-    taken.add(node.place - origin);
+    if (is_beside(taken, node.place, apart * edge)) continue;
+    taken.add(node.place);
     candidates.push_back(node.place);
     if (candidates.size() > max_candidates) return {};
   }

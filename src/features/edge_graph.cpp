@@ -1,6 +1,5 @@
 #include "features/edge_graph.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,55 +7,6 @@
 #include "grid/brick_union.h"
 
 namespace evenmesh {
-
-void PlaneQuadric::add(const Vec3& p, const Vec3& n) {
-  count_ += 1, sum_ += p, b_ += dot(n, p) * n;
-  a_[0] += n.x * n.x, a_[1] += n.x * n.y, a_[2] += n.x * n.z;
-  a_[3] += n.y * n.y, a_[4] += n.y * n.z, a_[5] += n.z * n.z;
-}
-
-void PlaneQuadric::add(const PlaneQuadric& other) {
-  count_ += other.count_, sum_ += other.sum_, b_ += other.b_;
-  for (std::size_t i = 0; i < 6; ++i) a_[i] += other.a_[i];
-}
-
-namespace {
-
-constexpr double smallest_share = 0.01;  // of the largest eigenvalue
-
-Eigen::Matrix3d symmetric(const std::array<double, 6>& a) {
-  Eigen::Matrix3d m;
-  m << a[0], a[1], a[2], a[1], a[3], a[4], a[2], a[4], a[5];
-  return m;
-}
-Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(const Eigen::Matrix3d& a) {
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(a);
-  return solver;
-}
-
-}  // namespace
-
-Vec3 PlaneQuadric::minimum(int least, int most) const {
-  const Eigen::Matrix3d a = symmetric(a_);
-  const Vec3 m = mean();
-  const Eigen::Vector3d at(m.x, m.y, m.z), residual = Eigen::Vector3d(b_.x, b_.y, b_.z) - a * at;
-  const auto solver = solved(a);
-  const auto& values = solver.eigenvalues();
-  Eigen::Vector3d x = at;
-  for (int rank = 0; rank < most; ++rank) {
-    const int i = 2 - rank;  // ascending
-    if (!(values[i] > (rank < least ? 1e-6 : smallest_share) * values[2])) break;
-    x += solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(residual) / values[i]);
-  }
-  return {x.x(), x.y(), x.z()};
-}
-
-int PlaneQuadric::rank() const {
-  const Eigen::Vector3d values = solved(symmetric(a_)).eigenvalues();
-  return static_cast<int>((values.array() > smallest_share * values[2]).count());
-}
-
 namespace {
 
 /// A sharp link as a cube sees it; the cube on the other side of the face has the same key.
@@ -119,7 +69,7 @@ class Finder {
     Box box;
     for (int i = 0; i < n; ++i) {
       const Vec3 p = position(brick, loop[i]) - samples_.grid.origin;
-      node.planes.add(p, normal[i]);
+      node.planes.add_plane(p, normal[i]);
       box.add(p);
       weight += samples_.weights()[loop[i]];
       area += samples_.area[loop[i]];

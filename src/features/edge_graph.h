@@ -6,31 +6,14 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "geometry/quadric.h"
 #include "grid/sample_set.h"
 
 namespace evenmesh {
 
-/// Squared distances from planes: Σ (n·(x − p))².
-class PlaneQuadric {
- public:
-  void add(const Vec3& p, const Vec3& n);
-  void add(const PlaneQuadric& other);
-  Vec3 mean() const { return sum_ / count_; }
-  /// The point nearest to the mean of the p's among those where the planes meet as well as they can. Directions in
-  /// which they hardly differ do not count, but the `least` strongest ones do; at most `most` do.
-  Vec3 minimum(int least, int most) const;
-  /// In how many directions the planes differ by more than hardly.
-  int rank() const;
-
- private:
-  double count_ = 0;
-  Vec3 sum_, b_;
-  std::array<double, 6> a_{};  ///< upper triangle
-};
-
 struct FeatureNode {
   Vec3 place;                  ///< of the crease in one cube, model units
-  PlaneQuadric planes;         ///< of the cube's crossings, about the grid's origin
+  Quadric planes;              ///< of the cube's crossings, about the grid's origin
   double relative_sizing = 1;  ///< 1 / wanted vertex spacing, compared with the mean: 1 where the density is uniform
 };
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "geometry/segment.h"
 #include "grid/morton.h"
 
 namespace evenmesh {
@@ -101,7 +102,8 @@ bool follows(const FeatureCurve& curve, double edge) {
 
 FeatureSeeds place_feature_seeds(const FeatureCurves& features, double edge) {
   FeatureSeeds seeds;
-  seeds.places = features.corners, seeds.corners = features.corners.size();
+  seeds.places = features.corners;
+  seeds.corners = features.corners.size();
   std::set<std::pair<std::uint32_t, std::uint32_t>> joined;  // corners with an edge between them
   for (std::uint32_t c = 0; c < features.curves.size(); ++c) {
     const FeatureCurve& curve = features.curves[c];
@@ -109,7 +111,8 @@ FeatureSeeds place_feature_seeds(const FeatureCurves& features, double edge) {
     std::uint32_t n = segments_of(curve, edge);
     if (n == 1 && !joined.insert(std::minmax(curve.from, curve.to)).second) n = 2;
     const auto first = static_cast<std::uint32_t>(seeds.places.size());
-    seeds.first.push_back(first), seeds.segments.push_back(n);
+    seeds.first.push_back(first);
+    seeds.segments.push_back(n);
     for (std::uint32_t k = closed ? 0 : 1; k < n; ++k) seeds.places.push_back(point_at(curve, curve.length() * k / n));
     for (std::uint32_t k = 0; k < n; ++k) {
       const double at = curve.length() / n;
@@ -127,13 +130,10 @@ void constrain_labels(const SampleSet& samples, const FeatureCurves& features, c
     double nearest = reach * reach;
     for (const auto& [c, i] : segments) {
       const FeatureCurve& curve = features.curves[c];
-      const Vec3 along = curve.points[i + 1] - curve.points[i], from = p - curve.points[i];
-      const double length2 = squared_norm(along);
-      const double share = length2 > 0 ? std::clamp(dot(from, along) / length2, 0.0, 1.0) : 0;
-      const double distance = squared_norm(from - share * along);
-      if (distance >= nearest) continue;
-      nearest = distance;
-      label = seed_at(features, seeds, c, curve.arc[i] + share * (curve.arc[i + 1] - curve.arc[i]));
+      const SegmentPoint on = closest_point_on_segment(p, curve.points[i], curve.points[i + 1]);
+      if (on.squared_distance >= nearest) continue;
+      nearest = on.squared_distance;
+      label = seed_at(features, seeds, c, curve.arc[i] + on.share * (curve.arc[i + 1] - curve.arc[i]));
     }
     return label;
   };

@@ -85,7 +85,10 @@ std::vector<Neighbours> neighbours_of(const std::vector<Triangle>& triangles, Me
 void orient(Mesh& mesh, MeshDefects& defects) {
   const std::vector<Neighbours> neighbours = neighbours_of(mesh.triangles, defects);
   std::vector<std::vector<std::pair<std::uint32_t, bool>>> around(mesh.triangles.size());
-  for (const Neighbours& n : neighbours) around[n.a].push_back({n.b, n.agree}), around[n.b].push_back({n.a, n.agree});
+  for (const Neighbours& n : neighbours) {
+    around[n.a].push_back({n.b, n.agree});
+    around[n.b].push_back({n.a, n.agree});
+  }
   std::vector<signed char> turn(mesh.triangles.size(), 0);  // 1: as it is, −1: the other way, within its patch
   std::vector<std::uint32_t> patch;
   for (std::uint32_t first = 0; first < turn.size(); ++first) {
@@ -99,8 +102,10 @@ void orient(Mesh& mesh, MeshDefects& defects) {
       const auto [a, b, c] = corners_of(mesh, t);
       as_it_is += turn[t] * triangle_area(a, b, c);
       for (const auto& [other, agree] : around[t])
-        if (turn[other] == 0)
-          turn[other] = static_cast<signed char>(agree ? turn[t] : -turn[t]), patch.push_back(other);
+        if (turn[other] == 0) {
+          turn[other] = static_cast<signed char>(agree ? turn[t] : -turn[t]);
+          patch.push_back(other);
+        }
     }
     for (const std::uint32_t t : patch)
       if ((turn[t] > 0) != (as_it_is >= 0)) {
@@ -117,7 +122,10 @@ void pack(Mesh& mesh) {
     for (std::uint32_t& v : t) index[v] = 0;
   std::uint32_t next = 0;
   for (std::size_t v = 0; v < index.size(); ++v)
-    if (index[v] == 0) mesh.vertices[next] = mesh.vertices[v], index[v] = next++;
+    if (index[v] == 0) {
+      mesh.vertices[next] = mesh.vertices[v];
+      index[v] = next++;
+    }
   mesh.vertices.resize(next);
   for (Triangle& t : mesh.triangles)
     for (std::uint32_t& v : t) v = index[v];

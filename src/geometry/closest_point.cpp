@@ -58,7 +58,9 @@ bool visit(RTCPointQueryFunctionArguments* args) {
 ClosestPoint search_within(const EmbreeScene& scene, Search search, double radius) {
   const Vec3 local = scene.to_local(search.p);
   RTCPointQuery query{};
-  query.x = static_cast<float>(local.x), query.y = static_cast<float>(local.y), query.z = static_cast<float>(local.z);
+  query.x = static_cast<float>(local.x);
+  query.y = static_cast<float>(local.y);
+  query.z = static_cast<float>(local.z);
   query.radius = rounded_up(search.scale * radius * (1 + 1e-6) + search.slack);
   search.best.squared_distance = std::nextafter(radius * radius, std::numeric_limits<double>::infinity());
   search.best.triangle = ~0u;

@@ -31,14 +31,18 @@ std::vector<std::vector<std::uint32_t>> boundary_loops(const Mesh& mesh) {
     if (edges.opposite(h) != HalfEdges::none) continue;
     const Triangle& t = mesh.triangles[h / 3];
     const std::uint32_t from = t[(h + 1) % 3], to = t[h % 3];
-    next[from] = to, count(leaving[from]), count(coming[to]);
+    next[from] = to;
+    count(leaving[from]);
+    count(coming[to]);
   }
   std::vector<std::vector<std::uint32_t>> loops;
   std::vector<char> seen(mesh.vertices.size(), 0);
   for (std::uint32_t first = 0; first < next.size(); ++first) {
     std::vector<std::uint32_t> loop;
-    for (std::uint32_t v = first; v != none && !seen[v] && leaving[v] == 1 && coming[v] == 1; v = next[v])
-      seen[v] = 1, loop.push_back(v);
+    for (std::uint32_t v = first; v != none && !seen[v] && leaving[v] == 1 && coming[v] == 1; v = next[v]) {
+      seen[v] = 1;
+      loop.push_back(v);
+    }
     if (loop.size() >= 3 && loop.size() <= longest_loop && next[loop.back()] == first) loops.push_back(std::move(loop));
   }
   return loops;
@@ -55,8 +59,10 @@ std::vector<Triangle> min_area_fill(const Mesh& mesh, const std::vector<std::uin
       const std::size_t j = i + span;
       double best = std::numeric_limits<double>::infinity();
       for (std::size_t k = i + 1; k < j; ++k)
-        if (const double area = least[i * n + k] + least[k * n + j] + triangle_area(at(i), at(k), at(j)); area < best)
-          best = area, apex[i * n + j] = static_cast<std::uint32_t>(k);
+        if (const double area = least[i * n + k] + least[k * n + j] + triangle_area(at(i), at(k), at(j)); area < best) {
+          best = area;
+          apex[i * n + j] = static_cast<std::uint32_t>(k);
+        }
       least[i * n + j] = best;
     }
   std::vector<Triangle> fill;
@@ -67,7 +73,8 @@ std::vector<Triangle> min_area_fill(const Mesh& mesh, const std::vector<std::uin
     if (j - i < 2) continue;
     const std::size_t k = apex[i * n + j];
     fill.push_back({loop[i], loop[k], loop[j]});
-    open.push_back({i, k}), open.push_back({k, j});
+    open.push_back({i, k});
+    open.push_back({k, j});
   }
   return fill;
 }
@@ -110,7 +117,10 @@ Mesh holes_filled(const Mesh& mesh, std::size_t& filled) {
   };
   Mesh result = mesh;
   for (const auto& fill : fills)
-    if (is_half_way(fill)) result.triangles.insert(result.triangles.end(), fill.begin(), fill.end()), ++filled;
+    if (is_half_way(fill)) {
+      result.triangles.insert(result.triangles.end(), fill.begin(), fill.end());
+      ++filled;
+    }
   return result;
 }
 

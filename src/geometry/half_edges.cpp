@@ -24,8 +24,14 @@ HalfEdges::HalfEdges(std::span<const Triangle> triangles, std::size_t vertices)
       for (std::uint32_t other = start_[v]; other < start_[v + 1]; ++other)
         forward += target(half_edges_from_[other]) == w;
       for (std::uint32_t other = start_[w]; other < start_[w + 1]; ++other)
-        if (target(half_edges_from_[other]) == v) ++backward, back = half_edges_from_[other];
-      if (forward == 1 && backward == 1) opposite_[h] = back, opposite_[back] = h;
+        if (target(half_edges_from_[other]) == v) {
+          ++backward;
+          back = half_edges_from_[other];
+        }
+      if (forward == 1 && backward == 1) {
+        opposite_[h] = back;
+        opposite_[back] = h;
+      }
     }
   }
 }

@@ -69,7 +69,8 @@ void PointTree::build(const ExecutionContext& context) {
       const int axis = longest_axis({points_.data() + begin, end - begin});
       std::nth_element(at(begin), at(mid), at(end), [&](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
       splits_[nodes + i] = {points_[mid][axis], static_cast<std::uint8_t>(axis)};
-      next[2 * i] = begin, next[2 * i + 1] = mid;
+      next[2 * i] = begin;
+      next[2 * i + 1] = mid;
     });
     next.back() = points_.size();
     ends.swap(next);

@@ -102,7 +102,9 @@ Mesh make_box_around(const Box& box, int cuts) {
         for (int j = 0; j < cuts; ++j) {
           const auto corner = [&](int di, int dj) {
             std::array<int, 3> at;
-            at[axis] = upper ? cuts : 0, at[u] = i + di, at[v] = j + dj;
+            at[axis] = upper ? cuts : 0;
+            at[u] = i + di;
+            at[v] = j + dj;
             return id(at);
           };
           const std::uint32_t a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);

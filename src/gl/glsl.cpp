@@ -21,7 +21,9 @@ void probe(const gl::GlslField& field, const Box& box) {
     const auto along = [&](int axis, int step) {
       return static_cast<float>(box.lo[axis] + (step + 0.37) / side * (box.hi[axis] - box.lo[axis]));
     };
-    x.push_back(along(0, i % side)), y.push_back(along(1, i / side % side)), z.push_back(along(2, i / side / side));
+    x.push_back(along(0, i % side));
+    y.push_back(along(1, i / side % side));
+    z.push_back(along(2, i / side / side));
   }
   std::vector<float> values(x.size());
   field.evaluate(PointBatch{x, y, z}, values);

@@ -127,7 +127,9 @@ void GlslField::enclose(std::span<const Box> boxes, std::span<Interval> ranges) 
   std::vector<float> x(boxes.size()), y(boxes.size()), z(boxes.size()), f(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Vec3 c = boxes[i].center();
-    x[i] = static_cast<float>(c.x), y[i] = static_cast<float>(c.y), z[i] = static_cast<float>(c.z);
+    x[i] = static_cast<float>(c.x);
+    y[i] = static_cast<float>(c.y);
+    z[i] = static_cast<float>(c.z);
   }
   evaluate(PointBatch{x, y, z}, f);
   for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -62,7 +62,10 @@ class Reader {
     d_.type = t_[i_++].text;
     d_.block = i_ < end_ && t_[i_].is("{");
     bool array = false;
-    while (i_ < end_ && t_[i_].is("[")) skip_brackets(), array = true;
+    while (i_ < end_ && t_[i_].is("[")) {
+      skip_brackets();
+      array = true;
+    }
     while (!d_.block && i_ < end_ && t_[i_].is_word()) {
       declarator(array);
       if (i_ >= end_ || !t_[i_].is(",")) break;
@@ -81,7 +84,8 @@ class Reader {
         for (std::size_t k = first; k < i_; ++k) d_.in_the_way.push_back(k);
         --i_;
       } else if (is_storage(token.text)) {
-        d_.storage = token.text, d_.storage_at = i_;
+        d_.storage = token.text;
+        d_.storage_at = i_;
       } else if (is_between(token.text)) {
         d_.in_the_way.push_back(i_);
       } else if (!is_qualifier(token.text) && !token.is_directive()) {
@@ -104,7 +108,11 @@ class Reader {
   void declarator(bool array) {
     Declarator one{i_, array, i_, {}};
     ++i_;
-    while (i_ < end_ && t_[i_].is("[")) skip_brackets(), one.array = true, one.last = i_ - 1;
+    while (i_ < end_ && t_[i_].is("[")) {
+      skip_brackets();
+      one.array = true;
+      one.last = i_ - 1;
+    }
     if (i_ < end_ && t_[i_].is("=")) {
       one.initial.begin = i_;
       while (i_ < end_ && !t_[i_].is(",") && !t_[i_].is(";")) {
@@ -148,7 +156,10 @@ class Setter {
  private:
   void blank(TokenRange range) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      if (!t_[i].is_directive()) t_[i].text.clear(), t_[i].after.clear();
+      if (!t_[i].is_directive()) {
+        t_[i].text.clear();
+        t_[i].after.clear();
+      }
     }
   }
 

@@ -39,7 +39,9 @@ std::uint32_t PointProgram::run(const PointBatch& points, unsigned layers, std::
     points_.upload(points.x.subspan(done, count), 0);
     points_.upload(points.y.subspan(done, count), count);
     points_.upload(points.z.subspan(done, count), 2 * count);
-    points_.bind(0), values_.bind(1), late_.bind(2);
+    points_.bind(0);
+    values_.bind(1);
+    late_.bind(2);
     program_.set("em_count", static_cast<std::uint32_t>(count));
     const auto start = std::chrono::steady_clock::now();
     program_.dispatch(what_, static_cast<unsigned>((count + group - 1) / group), layers);

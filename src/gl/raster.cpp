@@ -48,7 +48,7 @@ Shape shape_from_raster(const RasterOptions& options, std::string name) {
   auto device = std::make_shared<gl::RasterDevice>(gl::shared_context(options.device), std::move(source),
                                                    options.geometry, options.vertex_count);
   auto sampler = std::make_shared<const gl::RasterSampler>(std::move(device), name, bounds);
-  return Shape{std::move(name), bounds, std::shared_ptr<const Sampler>(std::move(sampler))};
+  return Shape{std::move(name), bounds, std::shared_ptr<const RaySource>(std::move(sampler))};
 }
 
 }  // namespace evenmesh

@@ -124,11 +124,16 @@ void RasterDevice::set_view(const RasterView& view) const {
   const Program& p = objects_->program;
   p.set_matrix("viewProjection", view.view_projection);
   p.set_matrix("inverseViewProjection", view.inverse);
-  p.set("viewDirection", view.direction), p.set("boundsLow", view.low), p.set("boundsHigh", view.high);
+  p.set("viewDirection", view.direction);
+  p.set("boundsLow", view.low);
+  p.set("boundsHigh", view.high);
   p.set("pixelSize", view.pixel_size);
   p.set("viewportSize", std::array<float, 2>{static_cast<float>(view.width), static_cast<float>(view.height)});
-  p.set("em_back_x", view.back[0]), p.set("em_back_y", view.back[1]), p.set("em_back_z", view.back[2]);
-  p.set("em_axis", view.axis), p.set("em_cells", view.cells);
+  p.set("em_back_x", view.back[0]);
+  p.set("em_back_y", view.back[1]);
+  p.set("em_back_z", view.back[2]);
+  p.set("em_axis", view.axis);
+  p.set("em_cells", view.cells);
   p.set("em_width", static_cast<std::uint32_t>(view.width));
   p.set("em_capacity", static_cast<std::uint32_t>(objects_->fragments.size() / words_of_fragment));
 }
@@ -137,7 +142,8 @@ void RasterDevice::set_view(const RasterView& view) const {
 std::size_t RasterDevice::draw_once(const RasterView& view) {
   Objects& o = *objects_;
   o.state.fill_with_zeros();
-  o.state.bind(0), o.fragments.bind(1);
+  o.state.bind(0);
+  o.fragments.bind(1);
   set_view(view);
   o.program.use();
   glBindFramebuffer(GL_FRAMEBUFFER, o.frame);

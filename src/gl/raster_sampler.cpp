@@ -61,8 +61,10 @@ class Band {
   Band(const Grid& grid, const Range& range, int axis, std::uint32_t first_row)
       : axis_(static_cast<std::size_t>(axis)), cells_(grid.size[axis_] - 1.0), range_(range), first_row_(first_row) {
     const auto p = static_cast<std::size_t>(dexel_p_axis[axis_]), q = static_cast<std::size_t>(dexel_q_axis[axis_]);
-    first_p_ = range.first[p], end_p_ = range.last[p] + 1;
-    begin_q_ = std::max(first_row, range.first[q]), end_q_ = std::min(first_row + view_size, range.last[q] + 1);
+    first_p_ = range.first[p];
+    end_p_ = range.last[p] + 1;
+    begin_q_ = std::max(first_row, range.first[q]);
+    end_q_ = std::min(first_row + view_size, range.last[q] + 1);
   }
 
   /// Its windows, in the order of p.
@@ -104,7 +106,10 @@ class Band {
       counts[i] = resolve_slab(static_cast<std::uint32_t>(i), found.slabs[first_slab + i], solid.slabs[first_slab + i]);
     });
     RayCounts sum{lost_, false};
-    for (const RayCounts& c : counts) sum.unresolved += c.unresolved, sum.capped = sum.capped || c.capped;
+    for (const RayCounts& c : counts) {
+      sum.unresolved += c.unresolved;
+      sum.capped = sum.capped || c.capped;
+    }
     return sum;
   }
 
@@ -174,8 +179,11 @@ class Painter {
     if (window.width == 1)
       throw UnusableInput(fmt::format("'{}' draws too many fragments onto one row of pixels; draw less", name_));
     RayWindow left = window, right = window;
-    left.width = window.width / 2, right.width = window.width - left.width, right.p += left.width;
-    paint(left, band), paint(right, band);
+    left.width = window.width / 2;
+    right.width = window.width - left.width;
+    right.p += left.width;
+    paint(left, band);
+    paint(right, band);
   }
 
  private:
@@ -212,7 +220,8 @@ RasterSampler::Drawing RasterSampler::draw(const Grid& grid, const Box& bounds, 
     const auto a = static_cast<std::size_t>(axis);
     const auto q = static_cast<std::size_t>(dexel_q_axis[a]);
     const std::size_t slabs = (grid.size[q] + brick_size - 1) / brick_size;
-    drawing.found[a].slabs.resize(slabs), solid.axes[a].slabs.resize(slabs);
+    drawing.found[a].slabs.resize(slabs);
+    solid.axes[a].slabs.resize(slabs);
     for (std::uint32_t row = range.first[q] / view_size * view_size; row <= range.last[q]; row += view_size) {
       Band band(grid, range, axis, row);
       for (const RayWindow& window : band.windows()) {
@@ -221,7 +230,8 @@ RasterSampler::Drawing RasterSampler::draw(const Grid& grid, const Box& bounds, 
       }
       band.sort(drawing.normals, execution);
       const RayCounts counts = band.resolve(drawing.found[a], solid.axes[a], execution);
-      solid.unresolved += counts.unresolved, solid.cut_by_bounds = solid.cut_by_bounds || counts.capped;
+      solid.unresolved += counts.unresolved;
+      solid.cut_by_bounds = solid.cut_by_bounds || counts.capped;
     }
   }
   return drawing;
@@ -251,7 +261,8 @@ SampleSet RasterSampler::sample_surface(const Grid& grid, const Box& bounds, Exe
   for (DexelAxis& axis : drawing.found)
     for (DexelSlab& slab : axis.slabs) drop_made(slab);
   TriDexel surface;
-  surface.grid = grid, surface.axes = std::move(drawing.found);
+  surface.grid = grid;
+  surface.axes = std::move(drawing.found);
   return sample_dexels(surface, drawing.normals, execution);
 }
 
@@ -260,7 +271,7 @@ double RasterSampler::solidity(const Box& bounds, ExecutionContext& execution) c
   return agreement(draw(make_grid(bounds, resolution), bounds, execution).occupancy);
 }
 
-std::shared_ptr<const Sampler> RasterSampler::moved(const Affine& transform) const {
+std::shared_ptr<const RaySource> RasterSampler::moved(const Affine& transform) const {
   return std::make_shared<RasterSampler>(device_, name_, bounds_, transform.after(placement_));
 }
 

@@ -8,11 +8,11 @@
 
 #include "gl/raster_device.h"
 #include "grid/tri_dexel.h"
-#include "shape/sampler.h"
+#include "shape/ray_source.h"
 
 namespace evenmesh::gl {
 
-class RasterSampler final : public Sampler {
+class RasterSampler final : public RaySource {
  public:
   /// @param bounds  of the model, what shaders are told
   RasterSampler(std::shared_ptr<RasterDevice> device, std::string name, const Box& bounds, const Affine& placement = {})
@@ -21,7 +21,7 @@ class RasterSampler final : public Sampler {
   SampleSet sample(const Grid& grid, const Box& bounds, ExecutionContext& execution) const override;
   SampleSet sample_surface(const Grid& grid, const Box& bounds, ExecutionContext& execution) const override;
   double solidity(const Box& bounds, ExecutionContext& execution) const override;
-  std::shared_ptr<const Sampler> moved(const Affine& transform) const override;
+  std::shared_ptr<const RaySource> moved(const Affine& transform) const override;
 
   /// The crossings, and the normals that they count. Cost: two passes of drawing per 512² rays at most, then sorting.
   TriDexel scan(const Grid& grid, const Box& bounds, std::vector<PackedNormal>& normals,

@@ -163,7 +163,8 @@ RasterSource prepare_raster(GlslText vertex, GlslText fragment, const Values& de
   check_normal(second);
   emit_glsl(first.source, first.tokens, first.outline, first.given);
   emit_glsl(second.source, second.tokens, second.outline, second.given);
-  raster.vertex = std::move(first.source), raster.fragment = std::move(second.source);
+  raster.vertex = std::move(first.source);
+  raster.fragment = std::move(second.source);
   raster.vertex_text = assembled(raster.vertex, "raster_vertex.glsl", {});
   raster.fragment_text = assembled(raster.fragment, "raster_fragment.glsl",
                                    {{"EM_WRITES_DEPTH", second.words.contains("gl_FragDepth") ? 1 : 0},

@@ -48,10 +48,13 @@ RasterView make_view(const Grid& grid, const RayWindow& window, const Affine& pl
   direction[window.axis] = 1;
   RasterView view;
   view.axis = window.axis;
-  view.width = static_cast<int>(window.width), view.height = static_cast<int>(window.height);
-  view.view_projection = matrix(to_screen), view.inverse = matrix(to_screen.inverse());
+  view.width = static_cast<int>(window.width);
+  view.height = static_cast<int>(window.height);
+  view.view_projection = matrix(to_screen);
+  view.inverse = matrix(to_screen.inverse());
   view.direction = floats(normalized(back.direction(direction)));
-  view.low = floats(bounds.lo), view.high = floats(bounds.hi);
+  view.low = floats(bounds.lo);
+  view.high = floats(bounds.hi);
   for (std::size_t c = 0; c < 3; ++c) view.back[c] = floats(back.column[c]);
   view.pixel_size = static_cast<float>(grid.spacing / std::cbrt(std::abs(placement.determinant())));
   view.cells = static_cast<float>(grid.size[static_cast<std::size_t>(window.axis)] - 1.0);

@@ -117,7 +117,8 @@ void CubeWalker::load(const CubeBrick& brick) {
 }
 
 void CubeWalker::unload() {
-  crossed_.fill(0), lines_.fill(0);
+  crossed_.fill(0);
+  lines_.fill(0);
 }
 
 CubeWalker::Row CubeWalker::row(int j, int k) const {

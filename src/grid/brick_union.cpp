@@ -3,24 +3,29 @@
 #include <algorithm>
 
 namespace evenmesh {
+namespace {
+
+std::vector<std::uint32_t> own_parents(std::size_t size, const ExecutionContext& context) {
+  std::vector<std::uint32_t> parents(size);
+  parallel_for(context, size, 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) parents[i] = static_cast<std::uint32_t>(i);
+  });
+  return parents;
+}
+
+}  // namespace
 
 BrickUnion::BrickUnion(const SampleSet& samples, const std::vector<CubeBrick>& bricks, const ExecutionContext& context)
-    : own_(bricks.size()), parent_(samples.size()), across_(bricks.size()) {
+    : own_(bricks.size()), sets_(own_parents(samples.size(), context)), across_(bricks.size()) {
   for (std::size_t b = 0; b < bricks.size(); ++b)
     if (const std::int64_t block = bricks[b].block[0]; block >= 0)
       own_[b] = {samples.blocks[block].begin, samples.blocks[block].end};
-  parallel_for(context, parent_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) parent_[i] = static_cast<std::uint32_t>(i);
-  });
 }
 
 void BrickUnion::flatten(const ExecutionContext& context) {
-  parallel_for(context, parent_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      std::uint32_t root = static_cast<std::uint32_t>(i);
-      while (parent_[root] != root) root = parent_[root];
-      parent_[i] = root;  // roots stay roots: no other thread's walk is misled
-    }
+  // Roots stay roots: no other thread's walk is misled.
+  parallel_for(context, sets_.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sets_.flatten(static_cast<std::uint32_t>(i));
   });
 }
 
@@ -32,7 +37,7 @@ void BrickUnion::settle(const ExecutionContext& context) {
       auto& pairs = across_[b];
       auto last = pairs.begin();
       for (const auto& [s, t] : pairs) {
-        const std::pair<std::uint32_t, std::uint32_t> pair = std::minmax({parent_[s], parent_[t]});
+        const std::pair<std::uint32_t, std::uint32_t> pair = std::minmax({sets_.root(s), sets_.root(t)});
         if (pair.first == pair.second) continue;
         if (std::find(std::make_reverse_iterator(last), pairs.rend(), pair) == pairs.rend()) *last++ = pair;
       }
@@ -40,7 +45,7 @@ void BrickUnion::settle(const ExecutionContext& context) {
     }
   });
   for (const auto& pairs : across_)
-    for (const auto& [s, t] : pairs) unite(parent_, s, t);
+    for (const auto& [s, t] : pairs) sets_.unite(s, t);
   across_.clear();
 }
 

@@ -19,7 +19,7 @@ class BrickUnion {
   void join(std::size_t b, std::uint32_t s, std::uint32_t t) {
     const auto [begin, end] = own_[b];
     if (s >= begin && s < end && t >= begin && t < end) {
-      if (parent_[s] != parent_[t]) unite(parent_, s, t);
+      sets_.unite(s, t);
     } else {
       across_[b].push_back({s, t});
     }
@@ -28,14 +28,14 @@ class BrickUnion {
   /// for any number of threads.
   void settle(const ExecutionContext& context);
 
-  /// Makes every sample's parent the root of its set.
+  /// Makes every sample's root its parent.
   void flatten(const ExecutionContext& context);
 
-  std::vector<std::uint32_t>& parent() { return parent_; }
+  UnionFind& sets() { return sets_; }
 
  private:
   std::vector<std::pair<std::uint32_t, std::uint32_t>> own_;  ///< by brick: its own samples
-  std::vector<std::uint32_t> parent_;
+  UnionFind sets_;
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> across_;
 };
 
@@ -55,16 +55,16 @@ void for_loops(const SampleSet& samples, const std::vector<CubeBrick>& bricks, c
 template <typename Same>
 std::vector<std::uint32_t> component_roots(const SampleSet& samples, const std::vector<CubeBrick>& bricks,
                                            const ExecutionContext& context, const Same& same) {
-  BrickUnion sets(samples, bricks, context);
+  BrickUnion parts(samples, bricks, context);
   for_loops(samples, bricks, context, [&](std::size_t b, const std::uint32_t* loop, int n) {
     for (int i = 0; i < n; ++i) {
       const std::uint32_t s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
-      if (same(s, t)) sets.join(b, s, t);
+      if (same(s, t)) parts.join(b, s, t);
     }
   });
-  sets.settle(context);
-  sets.flatten(context);
-  return std::move(sets.parent());
+  parts.settle(context);
+  parts.flatten(context);
+  return parts.sets().take_parents();
 }
 
 }  // namespace evenmesh

@@ -62,7 +62,8 @@ SampleSet coarsen(const SampleSet& fine, ExecutionContext& context) {
     SampleSet coarse;
     coarse.grid = {fine.grid.origin, 2 * fine.grid.spacing, fine.grid.size};
     for (std::uint32_t& n : coarse.grid.size) n = n / 2 + 1;
-    coarse.disagreements = fine.disagreements, coarse.unresolved = fine.unresolved;
+    coarse.disagreements = fine.disagreements;
+    coarse.unresolved = fine.unresolved;
     coarse.cut_by_bounds = fine.cut_by_bounds;
     const std::vector<CoarseBlock> groups = group_blocks(fine);
     std::vector<std::uint32_t> kept(groups.size());

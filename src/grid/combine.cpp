@@ -116,7 +116,8 @@ SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, con
   });
   SampleSet set;
   set.grid = a.grid;
-  set.disagreements = a.disagreements + b.disagreements, set.unresolved = a.unresolved + b.unresolved;
+  set.disagreements = a.disagreements + b.disagreements;
+  set.unresolved = a.unresolved + b.unresolved;
   set.cut_by_bounds = a.cut_by_bounds || b.cut_by_bounds;
   std::vector<std::size_t> pair_of_block;
   std::uint32_t total = 0;

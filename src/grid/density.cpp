@@ -47,7 +47,7 @@ WeightedSamples weigh_by_density(SampleSet samples, const Density& density, Exec
                            samples.weight[i] = static_cast<float>(samples.area[i] * relative * relative);
                            sums.weight += samples.weight[i];
                          }).weight;
-  return {std::move(samples), densities.largest / mean};
+  return {std::move(samples), mean, densities.largest};
 }
 
 }  // namespace evenmesh

@@ -71,8 +71,9 @@ void check_agreement(const SampleSet& samples, const ExecutionContext& context) 
     for (std::int32_t j = 0; j < std::int32_t(ny); ++j)
       for (std::int32_t i = 0; i < std::int32_t(nx); ++i) {
         const bool in = inside(i, j, k);
-        crossings += in != inside(i + 1, j, k), crossings += in != inside(i, j + 1, k),
-            crossings += in != inside(i, j, k + 1);
+        crossings += in != inside(i + 1, j, k);
+        crossings += in != inside(i, j + 1, k);
+        crossings += in != inside(i, j, k + 1);
         const bool outermost = i == 0 || j == 0 || k == 0 || i + 1 == std::int32_t(nx) || j + 1 == std::int32_t(ny) ||
                                k + 1 == std::int32_t(nz);
         if (in && outermost) throw UnusableInput("the dexels' solid reaches the border of its grid");
@@ -94,7 +95,8 @@ Dexels dexels_of(const SampleSet& samples) {
       Dexels::Crossing c;
       for (std::size_t a = 0; a < 3; ++a)
         c.point[a] = static_cast<std::uint16_t>(block.brick[a] * brick_size + cell[a]);
-      c.axis = static_cast<std::uint8_t>(edge.axis()), c.leaves = edge.lower_end_inside();
+      c.axis = static_cast<std::uint8_t>(edge.axis());
+      c.leaves = edge.lower_end_inside();
       c.t = static_cast<float>(std::clamp(along / samples.grid.spacing + half - cell[edge.axis()], 0.0, 1.0));
       c.normal = samples.normal[s].bits;
       dexels.crossings.push_back(c);
@@ -117,9 +119,11 @@ SampleSet samples_of(const Dexels& dexels, const ExecutionContext& context) {
     Vec3 at{double(c.point[0]), double(c.point[1]), double(c.point[2])};
     at[c.axis] += c.t;
     const Vec3 local = set.grid.point(at.x, at.y, at.z) - set.block_center(block);
-    set.x[s] = static_cast<float>(local.x), set.y[s] = static_cast<float>(local.y),
+    set.x[s] = static_cast<float>(local.x);
+    set.y[s] = static_cast<float>(local.y);
     set.z[s] = static_cast<float>(local.z);
-    set.edge[s] = edge_of(c), set.normal[s] = {c.normal};
+    set.edge[s] = edge_of(c);
+    set.normal[s] = {c.normal};
     set.area[s] = static_cast<float>(sample_area(unpack_normal({c.normal}), c.axis, dexels.spacing));
   }
   mark_axes(set, context);

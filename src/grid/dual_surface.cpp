@@ -1,7 +1,6 @@
 #include "grid/dual_surface.h"
 
-#include <Eigen/Cholesky>
-
+#include "geometry/quadric.h"
 #include "grid/brick_cubes.h"
 
 namespace evenmesh {
@@ -14,18 +13,12 @@ Vec3 vertex_of(const std::vector<Vec3>& position, const std::vector<PackedNormal
   Vec3 mean;
   for (int i = 0; i < length; ++i) mean += position[loop[i]];
   mean = mean / length;
-  Eigen::Matrix3d a = Eigen::Matrix3d::Identity() * (towards_mean * length);
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  for (int i = 0; i < length; ++i) {
-    const Vec3 n = unpack_normal(normal[loop[i]]);
-    const Eigen::Vector3d m(n.x, n.y, n.z);
-    a += m * m.transpose();
-    b += m * dot(n, position[loop[i]] - mean);
-  }
-  const Eigen::Vector3d step = a.ldlt().solve(b);
-  const Vec3 by{step.x(), step.y(), step.z()};
-  const double length_of = norm(by);
-  return mean + (length_of > spacing ? by * (spacing / length_of) : by);
+  Quadric planes;  // about the mean
+  planes.add_point({}, towards_mean * length);
+  for (int i = 0; i < length; ++i) planes.add_plane(position[loop[i]] - mean, unpack_normal(normal[loop[i]]));
+  const Vec3 step = planes.minimum();
+  const double by = norm(step);
+  return mean + (by > spacing ? step * (spacing / by) : step);
 }
 
 /// Corners of the quad around a crossing, counter-clockwise seen from where the solid is not.

@@ -44,9 +44,11 @@ class PieceReader {
       while (p_ < end_ && is_blank(*p_)) ++p_;
       if (end_ - p_ >= 2 && is_blank(p_[1])) {
         if (*p_ == 'v') {
-          ++p_, read_vertex();
+          ++p_;
+          read_vertex();
         } else if (*p_ == 'f') {
-          ++p_, read_face();
+          ++p_;
+          read_face();
         }
       }
       p_ = next_line(p_, end_);
@@ -90,7 +92,10 @@ class PieceReader {
     for (std::size_t count = 0; next_word(); ++count) {
       bool relative = false;
       const std::uint32_t current = read_corner(relative);
-      if (count == 0) first = current, first_relative = relative;
+      if (count == 0) {
+        first = current;
+        first_relative = relative;
+      }
       if (count >= 2) {
         const std::size_t corner = 3 * piece_.triangles.size();
         piece_.triangles.push_back({first, previous, current});
@@ -98,7 +103,8 @@ class PieceReader {
         if (previous_relative) piece_.relative.push_back(corner + 1);
         if (relative) piece_.relative.push_back(corner + 2);
       }
-      previous = current, previous_relative = relative;
+      previous = current;
+      previous_relative = relative;
     }
   }
 
@@ -160,7 +166,8 @@ std::vector<Piece> cut(std::string_view bytes) {
 /// Reads the piece once more, now that the counts are known, to find the statement at fault.
 [[noreturn]] void report_range(const Source& source, const Piece& piece, const Limits& limits) {
   Piece again;
-  again.begin = piece.begin, again.end = piece.end;
+  again.begin = piece.begin;
+  again.end = piece.end;
   PieceReader(source, again, limits).read();
   fail(source, "a vertex index is out of range");
 }

@@ -126,7 +126,8 @@ class BodyReader {
     for (const Element& element : header_.elements) {
       if (element.name == "vertex") {
         if (vertices_known_) values_.refuse("has two 'vertex' elements");
-        vertex_count_ = element.count, vertices_known_ = true;
+        vertex_count_ = element.count;
+        vertices_known_ = true;
       } else if (is_surface(element)) {
         faces_announced_ = faces_announced_ || element.count > 0;
       }
@@ -238,7 +239,8 @@ class BodyReader {
     std::array<std::size_t, 3> offset{};
     std::array<Type, 3> type{};
     for (std::size_t a = 0; a < 3; ++a) {
-      offset[a] = place_of(element, columns[a]), type[a] = element.properties[columns[a]].type;
+      offset[a] = place_of(element, columns[a]);
+      type[a] = element.properties[columns[a]].type;
     }
     const std::size_t stride = place_of(element, element.properties.size());
     const bool swap = values_.swap();

@@ -82,7 +82,9 @@ class StripCursor {
     if (length_ >= 2 && a_ != b_ && b_ != corner && corner != a_) {
       triangles.push_back(length_ % 2 == 0 ? Triangle{a_, b_, corner} : Triangle{b_, a_, corner});
     }
-    a_ = b_, b_ = corner, ++length_;
+    a_ = b_;
+    b_ = corner;
+    ++length_;
   }
 
  private:

@@ -45,8 +45,10 @@ Dexels parse_dexels(std::string_view bytes, std::string_view name) {
   for (Dexels::Crossing& c : dexels.crossings) {
     for (std::size_t a = 0; a < 3; ++a) c.point[a] = load<std::uint16_t>(at + 2 * a);
     const auto what = load<std::uint8_t>(at + 6);
-    c.axis = what & 3, c.leaves = (what & 4) != 0;
-    c.t = load<float>(at + 8), c.normal = load<std::uint32_t>(at + 12);
+    c.axis = what & 3;
+    c.leaves = (what & 4) != 0;
+    c.t = load<float>(at + 8);
+    c.normal = load<std::uint32_t>(at + 12);
     at += crossing_size;
   }
   return dexels;
@@ -72,7 +74,8 @@ std::string serialize_dexels(const Dexels& dexels) {
     for (const std::uint16_t p : c.point) out.put(p);
     out.put(static_cast<std::uint8_t>(c.axis | (c.leaves ? 4 : 0)));
     out.skip(1);
-    out.put(c.t), out.put(c.normal);
+    out.put(c.t);
+    out.put(c.normal);
   }
   return out.take();
 }

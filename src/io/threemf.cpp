@@ -69,7 +69,10 @@ class ModelParser {
   }
   void close(const XmlTags::Tag& tag) {
     if (tag.name == "mesh") in_mesh_ = false;
-    if (tag.name == "object") object_ = nullptr, in_mesh_ = false;
+    if (tag.name == "object") {
+      object_ = nullptr;
+      in_mesh_ = false;
+    }
   }
 
   void read_vertex(const XmlTags::Tag& tag) {

@@ -13,7 +13,8 @@ std::optional<std::string_view> XmlTags::Tag::attribute(std::string_view wanted)
 XmlTags::Tag XmlTags::parse(std::string_view inside) const {
   Tag tag{{}, {}, true, false};
   if (inside.starts_with('/')) {
-    tag.opens = false, tag.closes = true;
+    tag.opens = false;
+    tag.closes = true;
     inside.remove_prefix(1);
   } else if (inside.ends_with('/')) {
     tag.closes = true;

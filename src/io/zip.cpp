@@ -67,7 +67,8 @@ ZipArchive::ZipArchive(const Source& source) : source_(source) {
   if (at >= locator_size && source.bytes.substr(at - locator_size, 4) == locator_mark) {  // §4.3.15
     const std::string_view end64 = slice(field<std::uint64_t>(source.bytes, at - locator_size + 8), end64_size);
     if (end64.substr(0, 4) != end64_mark) fail(source, "is a damaged zip archive; copy or export it again");
-    count = field<std::uint64_t>(end64, 32), offset = field<std::uint64_t>(end64, 48);
+    count = field<std::uint64_t>(end64, 32);
+    offset = field<std::uint64_t>(end64, 48);
   }
   read_directory(offset, count);
 }
@@ -77,9 +78,12 @@ void ZipArchive::read_directory(std::uint64_t offset, std::uint64_t count) {
     const std::string_view record = slice(offset, directory_size);
     if (record.substr(0, 4) != directory_mark) fail(source_, "has a damaged zip directory; copy or export it again");
     Entry entry;
-    entry.flags = field<std::uint16_t>(record, 8), entry.method = field<std::uint16_t>(record, 10);
-    entry.crc = field<std::uint32_t>(record, 16), entry.packed_size = field<std::uint32_t>(record, 20);
-    entry.size = field<std::uint32_t>(record, 24), entry.offset = field<std::uint32_t>(record, 42);
+    entry.flags = field<std::uint16_t>(record, 8);
+    entry.method = field<std::uint16_t>(record, 10);
+    entry.crc = field<std::uint32_t>(record, 16);
+    entry.packed_size = field<std::uint32_t>(record, 20);
+    entry.size = field<std::uint32_t>(record, 24);
+    entry.offset = field<std::uint32_t>(record, 42);
     const std::uint64_t name = field<std::uint16_t>(record, 28), extra = field<std::uint16_t>(record, 30);
     entry.name = slice(offset + directory_size, name);
     read_zip64(slice(offset + directory_size + name, extra), entry);

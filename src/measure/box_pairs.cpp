@@ -30,7 +30,10 @@ void radix_pass(const std::vector<std::uint64_t>& keys, const std::vector<std::u
 BoxPairs::BoxPairs(const std::vector<Box>& boxes, const ExecutionContext& context) {
   Box all;
   for (const Box& box : boxes)
-    if (!box.empty()) all.add(box.lo), all.add(box.hi);
+    if (!box.empty()) {
+      all.add(box.lo);
+      all.add(box.hi);
+    }
   sort_along_curve(boxes, all);
   context.throw_if_cancelled();
 

@@ -62,7 +62,10 @@ CreaseDistance crease_distance(const Mesh& of, const Mesh& to, double step, Exec
     }
   });
   double sum = 0;
-  for (const Tally& tally : of_edge) result.largest = std::max(result.largest, tally.largest), sum += tally.sum;
+  for (const Tally& tally : of_edge) {
+    result.largest = std::max(result.largest, tally.largest);
+    sum += tally.sum;
+  }
   result.mean = result.length > 0 ? sum / result.length : 0;
   return result;
 }

@@ -53,7 +53,9 @@ struct Tally {
 
   void add(const Tally& t) {
     largest_squared = std::max(largest_squared, t.largest_squared);
-    squares += t.squares, sum += t.sum, angles += t.angles;
+    squares += t.squares;
+    sum += t.sum;
+    angles += t.angles;
   }
 };
 
@@ -65,7 +67,8 @@ class Follower {
     // Both distances are rounded, hence the margin; should it not suffice, the search starts anew without a limit.
     ClosestPoint found = query_.closest(p, (distance_ + norm(p - previous_)) * (1 + 1e-9));
     if (!found.found()) found = query_.closest(p);
-    previous_ = p, distance_ = std::sqrt(found.squared_distance);
+    previous_ = p;
+    distance_ = std::sqrt(found.squared_distance);
     return found;
   }
 
@@ -98,7 +101,10 @@ std::vector<Vec3> used_vertices(const Mesh& mesh) {
   used.reserve(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t v : t)
-      if (!seen[v]) seen[v] = true, used.push_back(mesh.vertices[v]);
+      if (!seen[v]) {
+        seen[v] = true;
+        used.push_back(mesh.vertices[v]);
+      }
   return used;
 }
 
@@ -146,14 +152,19 @@ MeshDistance compare_meshes(const Mesh& a, const Mesh& b, const CompareOptions& 
     const Tally from_b = one_sided(b, a, query_a, options.samples, context);
     const auto samples = static_cast<double>(options.samples);
     MeshDistance result;
-    result.a_to_b_max = std::sqrt(from_a.largest_squared), result.b_to_a_max = std::sqrt(from_b.largest_squared);
-    result.a_to_b_rms = std::sqrt(from_a.squares / samples), result.b_to_a_rms = std::sqrt(from_b.squares / samples);
-    result.a_to_b_mean = from_a.sum / samples, result.b_to_a_mean = from_b.sum / samples;
+    result.a_to_b_max = std::sqrt(from_a.largest_squared);
+    result.b_to_a_max = std::sqrt(from_b.largest_squared);
+    result.a_to_b_rms = std::sqrt(from_a.squares / samples);
+    result.b_to_a_rms = std::sqrt(from_b.squares / samples);
+    result.a_to_b_mean = from_a.sum / samples;
+    result.b_to_a_mean = from_b.sum / samples;
     result.normal_deviation_avg = from_a.angles / samples;
     result.reference_diagonal = b.bounds().diagonal();
     result.edge_length_avg = mean_edge_length(a);
     const CreaseDistance features = crease_distance(b, a, 0.1 * result.edge_length_avg, context);
-    result.crease_max = features.largest, result.crease_avg = features.mean, result.crease_length = features.length;
+    result.crease_max = features.largest;
+    result.crease_avg = features.mean;
+    result.crease_length = features.length;
     return result;
   });
 }

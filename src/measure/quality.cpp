@@ -18,8 +18,10 @@ struct Sums {
   void add(const Mesh& mesh, std::size_t triangle, const Vec3& origin) {
     const auto [a, b, c] = corners_of(mesh, triangle);
     const TriangleQuality t = triangle_quality(a, b, c);
-    q_min = std::min(q_min, t.q), q_sum += t.q;
-    theta_min = std::min(theta_min, t.smallest_angle), theta_sum += t.smallest_angle;
+    q_min = std::min(q_min, t.q);
+    q_sum += t.q;
+    theta_min = std::min(theta_min, t.smallest_angle);
+    theta_sum += t.smallest_angle;
     theta_max = std::max(theta_max, t.largest_angle);
     below_30 += t.smallest_angle < 30;
     area += t.area;
@@ -28,10 +30,15 @@ struct Sums {
     degenerate += t.smallest_angle < 1e-5 && is_degenerate(mesh, triangle);
   }
   void add(const Sums& s) {
-    q_min = std::min(q_min, s.q_min), q_sum += s.q_sum;
-    theta_min = std::min(theta_min, s.theta_min), theta_sum += s.theta_sum,
+    q_min = std::min(q_min, s.q_min);
+    q_sum += s.q_sum;
+    theta_min = std::min(theta_min, s.theta_min);
+    theta_sum += s.theta_sum;
     theta_max = std::max(theta_max, s.theta_max);
-    area += s.area, volume += s.volume, below_30 += s.below_30, degenerate += s.degenerate;
+    area += s.area;
+    volume += s.volume;
+    below_30 += s.below_30;
+    degenerate += s.degenerate;
   }
 };
 
@@ -51,10 +58,15 @@ Sums sum_triangles(const Mesh& mesh, const ExecutionContext& context) {
 
 void put_shapes(const Sums& sums, MeshQuality& q) {
   const auto faces = static_cast<double>(q.faces);
-  q.q_min = sums.q_min, q.q_avg = sums.q_sum / faces;
-  q.theta_min = sums.theta_min, q.theta_avg = sums.theta_sum / faces, q.theta_max = sums.theta_max;
+  q.q_min = sums.q_min;
+  q.q_avg = sums.q_sum / faces;
+  q.theta_min = sums.theta_min;
+  q.theta_avg = sums.theta_sum / faces;
+  q.theta_max = sums.theta_max;
   q.below_30_ratio = static_cast<double>(sums.below_30) / faces;
-  q.area = sums.area, q.volume = sums.volume, q.degenerate_faces = sums.degenerate;
+  q.area = sums.area;
+  q.volume = sums.volume;
+  q.degenerate_faces = sums.degenerate;
 }
 
 void put_topology(const Topology& topology, MeshQuality& q) {
@@ -66,12 +78,17 @@ void put_topology(const Topology& topology, MeshQuality& q) {
     }
     ++q.vertices;
     q.max_valence = std::max<std::size_t>(q.max_valence, v.valence);
-    if (!v.on_boundary) ++interior, irregular += v.valence != 6;
+    if (!v.on_boundary) {
+      ++interior;
+      irregular += v.valence != 6;
+    }
     q.non_manifold_vertices += v.umbrellas > 1 || v.on_non_manifold_edge;
   }
   q.irregular_ratio = interior > 0 ? static_cast<double>(irregular) / static_cast<double>(interior) : 0;
-  q.boundary_edges = topology.boundary, q.non_manifold_edges = topology.non_manifold;
-  q.inconsistent_edges = topology.inconsistent, q.components = topology.components;
+  q.boundary_edges = topology.boundary;
+  q.non_manifold_edges = topology.non_manifold;
+  q.inconsistent_edges = topology.inconsistent;
+  q.components = topology.components;
   q.euler = static_cast<std::int64_t>(q.vertices + q.faces) - static_cast<std::int64_t>(topology.edges);
   const auto edges = static_cast<double>(topology.edges);
   q.edge_length_avg = topology.length_sum / edges;

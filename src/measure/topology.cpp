@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/union_find.h"
+
 namespace evenmesh {
 namespace {
 
@@ -50,26 +52,6 @@ Sides collect_sides(const Mesh& mesh) {
   return result;
 }
 
-/// Disjoint sets with path halving; the lower index becomes the root.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  /// Whether two different sets became one.
-  bool unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
-    if (a == b) return false;
-    parent_[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 std::uint32_t corner_of(const Mesh& mesh, std::uint32_t face, std::uint32_t vertex) {
   const Triangle& t = mesh.triangles[face];
   return 3 * face + (t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2);
@@ -88,16 +70,25 @@ std::vector<VertexState> count_corners(const Mesh& mesh) {
 }
 
 /// One edge: the sides [begin, end) that join `lower` and begin->upper.
-void add_edge(const Mesh& mesh, std::uint32_t lower, const Side* begin, const Side* end, Sets& corners, Sets& faces,
-              Topology& topology) {
+void add_edge(const Mesh& mesh, std::uint32_t lower, const Side* begin, const Side* end, UnionFind& corners,
+              UnionFind& faces, Topology& topology) {
   const std::uint32_t upper = begin->upper;
   const auto count = end - begin;
   VertexState &a = topology.vertices[lower], &b = topology.vertices[upper];
-  ++topology.edges, ++a.valence, ++b.valence;
+  ++topology.edges;
+  ++a.valence;
+  ++b.valence;
   const double squared = squared_norm(mesh.vertices[upper] - mesh.vertices[lower]);
-  topology.length_sum += std::sqrt(squared), topology.length_squares += squared;
-  if (count == 1) ++topology.boundary, a.on_boundary = b.on_boundary = true;
-  if (count > 2) ++topology.non_manifold, a.on_non_manifold_edge = b.on_non_manifold_edge = true;
+  topology.length_sum += std::sqrt(squared);
+  topology.length_squares += squared;
+  if (count == 1) {
+    ++topology.boundary;
+    a.on_boundary = b.on_boundary = true;
+  }
+  if (count > 2) {
+    ++topology.non_manifold;
+    a.on_non_manifold_edge = b.on_non_manifold_edge = true;
+  }
   if (count == 2) {
     if (begin[0].ascending == begin[1].ascending) ++topology.inconsistent;
     for (const std::uint32_t v : {lower, upper})
@@ -115,7 +106,7 @@ Topology measure_topology(const Mesh& mesh) {
   topology.vertices = count_corners(mesh);
   topology.components = mesh.triangles.size();
   const Sides all = collect_sides(mesh);
-  Sets corners(3 * mesh.triangles.size()), faces(mesh.triangles.size());
+  UnionFind corners(3 * mesh.triangles.size()), faces(mesh.triangles.size());
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     const Side *side = all.sides.data() + all.begin[v], *last = all.sides.data() + all.begin[v + 1];
     while (side != last) {

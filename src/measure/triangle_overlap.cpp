@@ -168,7 +168,13 @@ bool triangles_overlap(const Mesh& mesh, std::uint32_t s, std::uint32_t t, int a
   int other_a = 3, other_b = 3;        // what is left of 0 + 1 + 2 without the shared ones
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      if (a[i] == b[j]) ++shared, in_a = i, in_b = j, other_a -= i, other_b -= j;
+      if (a[i] == b[j]) {
+        ++shared;
+        in_a = i;
+        in_b = j;
+        other_a -= i;
+        other_b -= j;
+      }
   const Corners p = corners_of(mesh, s), q = corners_of(mesh, t);
   switch (shared) {
     case 0:

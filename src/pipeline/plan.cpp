@@ -4,168 +4,144 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/parallel.h"
-#include "grid/surface_components.h"
-#include "sample/sample.h"
+#include "evenmesh/error.h"
+#include "grid/sizing_field.h"
+#include "pipeline/presample.h"
 
 namespace evenmesh {
 namespace {
 
-constexpr double wanted_alpha = 100, min_alpha = 50;
-constexpr std::size_t max_cells = 8192;
-constexpr std::size_t presample_cells = 96;
-constexpr std::size_t max_small_components = 16;  ///< of a surface that is not taken for a fractal
-constexpr double min_cells_across = 1.2;          ///< thinner parts may lie between the grid points
+constexpr double min_solidity = 0.6;            ///< of what has an inside to speak of
+constexpr std::size_t many_components = 16;     ///< small ones: of a surface that is taken for a fractal
+constexpr double samples_per_voxel_area = 1.5;  ///< Σ |n_a|, the mean over all directions
+constexpr unsigned default_thickness = 2;       ///< voxels
 
-struct Pairs {
-  std::vector<std::pair<float, float>> curvature, thickness;  ///< (value, area)
-};
+Route route_of(const Sampler& sampler, const MeshOptions& options, ExecutionContext& context) {
+  if (options.method == Method::raster && (options.wrap || !sampler.has_inside()))
+    throw InvalidInput("rays need a solid: points and wraps are meshed by the shell method");
+  if (options.wrap) return Route::wrap;
+  if (options.method == Method::shell) return Route::sheets;
+  if (options.method == Method::raster) return Route::solid;
+  return sampler.solidity(context) < min_solidity ? Route::sheets : Route::solid;
+}
 
-/// Compares each sample of a block with a few others of it.
-void compare_samples(const SampleSet& samples, const SampleBlock& block, Pairs& pairs) {
-  const double h = samples.grid.spacing;
-  const auto position = [&](std::uint32_t i) { return Vec3{samples.x[i], samples.y[i], samples.z[i]}; };
-  for (std::uint32_t i = block.begin; i < block.end; i += 3) {
-    const Vec3 n = unpack_normal(samples.normal[i]), p = position(i);
-    double bend = -1, nearest_back = std::numeric_limits<double>::infinity();
-    for (std::uint32_t j = block.begin; j < block.end; j += 2) {
-      if (j == i) continue;
-      const Vec3 m = unpack_normal(samples.normal[j]), d = position(j) - p;
-      const double distance = norm(d), facing = dot(n, m);
-      // The same sheet, two to four cells apart: far enough for the angle to mean something.
-      if (facing > 0.2 && distance > 1.8 * h && distance < 4 * h && std::abs(dot(d, n)) < 0.5 * distance)
-        bend = std::max(bend, norm(n - m) / distance);
-      // The other side of the solid: behind the sample and facing away.
-      if (facing < -0.7 && dot(d, n) < -0.7 * distance) nearest_back = std::min(nearest_back, distance);
-    }
-    if (bend >= 0) pairs.curvature.push_back({static_cast<float>(bend), samples.area[i]});
-    pairs.thickness.push_back({static_cast<float>(nearest_back), samples.area[i]});
+/// Edges turn little, and are no longer than thin parts are thick.
+double estimated_vertices(const SurfaceScale& scale, double diagonal) {
+  double edge = std::min(0.35 * scale.curvature_radius, 1.5 * scale.thickness);
+  edge = std::clamp(edge, diagonal / 500, diagonal / 40);
+  return std::clamp(std::round(vertices_of(scale.area, edge)), 200.0, 1e6);
+}
+
+/// The vertices that the user said in one way or another.
+std::optional<double> asked_vertices(const MeshOptions& options, double area) {
+  if (options.vertices) return static_cast<double>(*options.vertices);
+  if (options.edge_length) return std::round(vertices_of(area, *options.edge_length));
+  return std::nullopt;
+}
+
+double solid_vertices(const SurfaceScale& scale, double diagonal, const MeshOptions& options, Plan& plan) {
+  if (const auto asked = asked_vertices(options, scale.area)) return std::max(*asked, 4.0);
+  const double vertices = estimated_vertices(scale, diagonal);
+  const std::string thinnest = std::isfinite(scale.thickness) ? fmt::format("{:.3g}", scale.thickness) : "not thin";
+  plan.findings.push_back(make_finding(
+      FindingCode::fineness_estimated,
+      {{"vertices", vertices},
+       {"area", scale.area},
+       {"also", fmt::format(", curvature radius {:.3g}, thinnest part {}", scale.curvature_radius, thinnest)}}));
+  return vertices;
+}
+
+/// Cells along the longest side.
+double solid_resolution(const SurfaceScale& scale, double longest, double vertices, const MeshOptions& options) {
+  if (options.resolution) return static_cast<double>(*options.resolution);
+  const double samples = wanted_alpha * 1.02 * vertices;
+  double resolution = longest / std::sqrt(scale.area * scale.samples_per_area / samples);
+  // Thin parts need grid points inside, as long as that costs no more than four times the samples. Where there are many
+  // small components, thin parts are thin at every scale.
+  if (std::isfinite(scale.thickness) && scale.thickness > 0 && scale.small_components <= many_components)
+    resolution = std::clamp(2.5 * longest / scale.thickness, resolution, 2 * resolution);
+  return std::ceil(std::max(resolution, 24.0));
+}
+
+void plan_solid(const Sampler& sampler, const MeshOptions& options, StageTimer& timer, ExecutionContext& context,
+                Plan& plan) {
+  const SurfaceScale scale =
+      timer.stage("sample", 0.02, [&] { return presample(sampler, options.resolution.value_or(0), context); });
+  const double longest = sampler.bounds().longest_side();
+  double vertices = solid_vertices(scale, sampler.bounds().diagonal(), options, plan);
+  double resolution = solid_resolution(scale, longest, vertices, options);
+  if (resolution > double(max_resolution)) {
+    resolution = double(max_resolution);
+    plan.findings.push_back(
+        make_finding(FindingCode::resolution_limited, {{"resolution", resolution}, {"alpha", wanted_alpha}}));
   }
-}
-
-/// The value below which `share` of the area lies.
-double quantile(std::vector<std::pair<float, float>>& values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  double total = 0, passed = 0;
-  for (const auto& v : values) total += v.second;
-  for (const auto& v : values)
-    if ((passed += v.second) >= share * total) return v.first;
-  return values.back().first;
-}
-
-}  // namespace
-
-double edge_length_of(double area, double vertices) {
-  return std::sqrt(2 * area / (std::numbers::sqrt3 * vertices));
-}
-double vertices_of(double area, double edge_length) {
-  return 2 * area / (std::numbers::sqrt3 * edge_length * edge_length);
-}
-
-SurfaceScale measure_scale(const SampleSet& coarse, ExecutionContext& context) {
-  std::vector<Pairs> of_chunk((coarse.blocks.size() + 63) / 64);
-  parallel_tasks(context, of_chunk.size(), [&](std::size_t c) {
-    for (std::size_t b = 64 * c; b < std::min(coarse.blocks.size(), 64 * (c + 1)); ++b)
-      compare_samples(coarse, coarse.blocks[b], of_chunk[c]);
-  });
-  Pairs all;
-  for (const Pairs& p : of_chunk) {
-    all.curvature.insert(all.curvature.end(), p.curvature.begin(), p.curvature.end());
-    all.thickness.insert(all.thickness.end(), p.thickness.begin(), p.thickness.end());
-  }
-  const double h = coarse.grid.spacing, bend = quantile(all.curvature, 0.9);
-  SurfaceScale scale;
-  scale.area = coarse.total_area;
-  scale.samples_per_area = static_cast<double>(coarse.size()) * h * h / coarse.total_area;
-  scale.curvature_radius = bend > 0 ? 1 / bend : std::numeric_limits<double>::infinity();
-  scale.thickness = quantile(all.thickness, 0.02);
-  return scale;
-}
-
-namespace {
-
-std::size_t count_small_components(const SampleSet& samples, ExecutionContext& context) {
-  const double small_component = 8 * samples.grid.spacing * samples.grid.spacing;
-  const auto parts = surface_components(samples, context);
-  return static_cast<std::size_t>(
-      std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < small_component; }));
-}
-
-}  // namespace
-
-SurfaceScale presample(const Shape& shape, std::size_t finest, ExecutionContext& context) {
-  finest = std::max(finest, 4 * presample_cells);
-  for (std::size_t cells = presample_cells;; cells *= 2) {
-    const bool last = 2 * cells > finest;
-    try {
-      const SampleSet samples = sample_shape(shape, make_grid(shape.bounds, cells), context);
-      SurfaceScale scale = measure_scale(samples, context);
-      scale.small_components = count_small_components(samples, context);
-      if (last || scale.thickness > min_cells_across * samples.grid.spacing) return scale;
-    } catch (const UnusableInput&) {
-      if (last) throw;
-    }
-  }
-}
-
-Fineness choose_fineness(const SurfaceScale& scale, const Box& bounds, const MeshOptions& options,
-                         std::vector<Notice>& notices) {
-  const double longest = bounds.longest_side();
-  const auto resolution_for = [&](double samples) {  // cells along the longest side that give so many samples
-    return longest / std::sqrt(scale.area * scale.samples_per_area / samples);
-  };
-  const auto samples_at = [&](double resolution) {
-    const double h = longest / resolution;
-    return scale.area * scale.samples_per_area / (h * h);
-  };
-
-  double vertices = 0;
-  if (options.vertices) {
-    vertices = static_cast<double>(*options.vertices);
-  } else if (options.edge_length) {
-    vertices = std::round(vertices_of(scale.area, *options.edge_length));
-  } else {
-    const double diagonal = bounds.diagonal();
-    double edge = std::min(0.35 * scale.curvature_radius, 1.5 * scale.thickness);
-    edge = std::clamp(edge, diagonal / 500, diagonal / 40);
-    vertices = std::clamp(std::round(vertices_of(scale.area, edge)), 200.0, 1e6);
-    notices.push_back(
-        {false,
-         fmt::format("no -n or -l given: {:.0f} vertices, from area {:.4g}, curvature radius {:.3g}, thinnest part {}",
-                     vertices, scale.area, scale.curvature_radius,
-                     std::isfinite(scale.thickness) ? fmt::format("{:.3g}", scale.thickness) : "not thin")});
-  }
-  vertices = std::max(vertices, 4.0);
-
-  double resolution = 0;
-  if (options.resolution) {
-    resolution = static_cast<double>(*options.resolution);
-  } else {
-    resolution = resolution_for(wanted_alpha * 1.02 * vertices);
-    // Thin parts need grid points inside, as long as that costs no more than four times the samples. Where there is
-    // dust, thin parts are thin at every scale.
-    if (std::isfinite(scale.thickness) && scale.thickness > 0 && scale.small_components <= max_small_components)
-      resolution = std::clamp(2.5 * longest / scale.thickness, resolution, 2 * resolution);
-    resolution = std::ceil(std::max(resolution, 24.0));
-  }
-  if (resolution > max_cells) {
-    notices.push_back(
-        {false, fmt::format("the grid ends at {} cells along the longest side: fewer than {} samples per seed",
-                            max_cells, wanted_alpha)});
-    resolution = max_cells;
-  }
-  const double max_vertices = std::max(4.0, std::floor(samples_at(resolution) / min_alpha));
+  const double h = longest / resolution, samples = scale.area * scale.samples_per_area / (h * h);
+  const double max_vertices = std::max(4.0, std::floor(samples / min_alpha));
   if (vertices > max_vertices) {
-    notices.push_back(
-        {false,
-         fmt::format("{:.0f} vertices would have fewer than {} samples each at resolution {:.0f}; meshing with {:.0f}",
-                     vertices, min_alpha, resolution, max_vertices)});
+    plan.findings.push_back(make_finding(
+        FindingCode::vertices_limited,
+        {{"asked", vertices}, {"alpha", min_alpha}, {"resolution", resolution}, {"vertices", max_vertices}}));
     vertices = max_vertices;
   }
-  return {static_cast<std::size_t>(vertices), static_cast<std::size_t>(resolution)};
+  plan.vertices = static_cast<std::size_t>(vertices);
+  plan.grid.resolution = static_cast<std::size_t>(resolution);
+  plan.samples_per_h2 = scale.area * scale.samples_per_area;
+  plan.small_components = scale.small_components;
+}
+
+double shell_vertices(double area, double diagonal, const MeshOptions& options, Plan& plan) {
+  if (options.vertices) return static_cast<double>(*options.vertices);
+  if (options.edge_length) return vertices_of(area, *options.edge_length);
+  const double vertices = std::clamp(vertices_of(area, diagonal / 80), 200.0, 1e6);
+  plan.findings.push_back(
+      make_finding(FindingCode::fineness_estimated, {{"vertices", vertices}, {"area", area}, {"also", std::string()}}));
+  return vertices;
+}
+
+/// Random points leave gaps of up to about three times their spacing. Returns the resolution.
+double bridge_gaps(double spacing, double longest, double resolution, const MeshOptions& options, Plan& plan) {
+  const double voxels = 1.6 * spacing * resolution / longest;
+  if (!options.resolution && voxels > max_thickness) resolution = std::floor(resolution * max_thickness / voxels);
+  const double wanted =
+      std::clamp(std::ceil(1.6 * spacing * resolution / longest), double(default_thickness), double(max_thickness));
+  plan.grid.bridge = options.thickness.value_or(static_cast<unsigned>(wanted));
+  plan.grid.thickness = default_thickness;
+  const double gap = 2 * plan.grid.bridge * longest / resolution;
+  plan.findings.push_back(make_finding(FindingCode::point_gaps_bridged,
+                                       {{"spacing", spacing}, {"gap", gap}, {"voxels", 2.0 * plan.grid.bridge}}));
+  return resolution;
+}
+
+void plan_shell(const Sampler& sampler, const MeshOptions& options, ExecutionContext& context, Plan& plan) {
+  const double area = sampler.area(context), longest = sampler.bounds().longest_side();
+  if (!(area > 0) || !(longest > 0))
+    throw UnusableInput("the input has no area: all its triangles or points lie on a line or in a point");
+  const double vertices = shell_vertices(area, sampler.bounds().diagonal(), options, plan);
+  plan.vertices = static_cast<std::size_t>(std::max(4.0, std::round(vertices)));
+  const double h = std::sqrt(samples_per_voxel_area * area / (wanted_alpha * static_cast<double>(plan.vertices)));
+  double resolution = std::clamp(std::ceil(longest / h), 32.0, double(max_resolution));
+  if (options.resolution) resolution = static_cast<double>(*options.resolution);
+  plan.grid.thickness = options.thickness.value_or(default_thickness);
+  if (const auto spacing = sampler.point_spacing())
+    resolution = bridge_gaps(*spacing, longest, resolution, options, plan);
+  plan.grid.resolution = static_cast<std::size_t>(resolution);
+  if (plan.route != Route::wrap) return;
+  plan.grid.thickness = std::max(plan.grid.thickness, 2u);  // the border is eroded by one less
+  if (plan.grid.bridge > 0) plan.grid.bridge = std::max(plan.grid.bridge, plan.grid.thickness);
+}
+
+}  // namespace
+
+Plan make_plan(const Sampler& sampler, const MeshOptions& options, StageTimer& timer, ExecutionContext& context) {
+  Plan plan;
+  plan.route = timer.stage("sample", 0, [&] { return route_of(sampler, options, context); });
+  plan.refinable = !options.resolution;
+  if (plan.route == Route::solid)
+    plan_solid(sampler, options, timer, context, plan);
+  else
+    timer.stage("voxelize", 0.02, [&] { plan_shell(sampler, options, context, plan); });
+  return plan;
 }
 
 }  // namespace evenmesh

@@ -4,6 +4,23 @@
 #include "evenmesh/mesh_shape.h"
 
 namespace evenmesh {
+namespace {
+
+nlohmann::ordered_json finding_json(const Finding& finding) {
+  nlohmann::ordered_json json;
+  json["code"] = finding_name(finding.code);
+  json["severity"] = finding.severity == Severity::note      ? "note"
+                     : finding.severity == Severity::warning ? "warning"
+                                                             : "broken promise";
+  if (finding.place) json["place"] = {finding.place->x, finding.place->y, finding.place->z};
+  json["values"] = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : finding.values)
+    std::visit([&, &key = name](const auto& v) { json["values"][key] = v; }, value);
+  json["sentence"] = finding.sentence;
+  return json;
+}
+
+}  // namespace
 
 std::string report_json(const Report& r) {
   // The mesh's figures first, under the same keys as in `info`; the run's after them.
@@ -19,6 +36,7 @@ std::string report_json(const Report& r) {
   json["energies"] = r.energies;
   json["evaluations"] = r.evaluations;
   json["disagreements"] = r.disagreements;
+  json["unresolved"] = r.unresolved;
   json["filled_cavities"] = r.filled_cavities;
   json["dropped_components"] = r.dropped_components;
   json["sites"] = r.sites;
@@ -36,9 +54,8 @@ std::string report_json(const Report& r) {
   json["seconds"] = nlohmann::ordered_json::object();
   for (const auto& [stage, seconds] : r.seconds) json["seconds"][stage] = seconds;
   json["peak_memory_bytes"] = r.peak_memory_bytes;
-  json["notices"] = nlohmann::ordered_json::array();
-  for (const Notice& notice : r.notices)
-    json["notices"].push_back({{"promise_broken", notice.promise_broken}, {"text", notice.text}});
+  json["findings"] = nlohmann::ordered_json::array();
+  for (const Finding& finding : r.findings) json["findings"].push_back(finding_json(finding));
   return json.dump(2);
 }
 

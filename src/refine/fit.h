@@ -7,8 +7,8 @@
 #include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
 #include "grid/sample_set.h"
-#include "refine/projector.h"
 #include "refine/vertex_constraints.h"
+#include "sample/projector.h"
 
 namespace evenmesh {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "evenmesh/mesh.h"
-#include "refine/projector.h"
 #include "refine/vertex_constraints.h"
+#include "sample/projector.h"
 
 namespace evenmesh {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/segment.h"
+
 namespace evenmesh {
 namespace {
 
@@ -17,11 +19,10 @@ CurvePoint nearest_on(const FeatureCurve& curve, const Vec3& p) {
   double nearest = std::numeric_limits<double>::infinity();
   CurvePoint best{points.front(), 0};
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const Vec3 along = points[i + 1] - points[i], from = p - points[i];
-    const double length2 = squared_norm(along);
-    const double share = length2 > 0 ? std::clamp(dot(from, along) / length2, 0.0, 1.0) : 0;
-    if (const double d = squared_norm(from - share * along); d < nearest)
-      nearest = d, best = {points[i] + share * along, curve.arc[i] + share * (curve.arc[i + 1] - curve.arc[i])};
+    const SegmentPoint on = closest_point_on_segment(p, points[i], points[i + 1]);
+    if (on.squared_distance >= nearest) continue;
+    nearest = on.squared_distance;
+    best = {on.point, curve.arc[i] + on.share * (curve.arc[i + 1] - curve.arc[i])};
   }
   return best;
 }
@@ -30,14 +31,10 @@ CurvePoint nearest_on(const FeatureCurve& curve, const Vec3& p) {
 double deviation_between(const FeatureCurve& curve, const Vec3& p, const Vec3& q) {
   const auto [s, t] = std::minmax({nearest_on(curve, p).arc, nearest_on(curve, q).arc});
   const bool around = curve.points.front() == curve.points.back() && 2 * (t - s) > curve.length();
-  const Vec3 along = q - p;
-  const double length2 = squared_norm(along);
   double most = 0;
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     if ((curve.arc[i] > s && curve.arc[i] < t) == around) continue;
-    const Vec3 from = curve.points[i] - p;
-    const double share = length2 > 0 ? std::clamp(dot(from, along) / length2, 0.0, 1.0) : 0;
-    most = std::max(most, squared_norm(from - share * along));
+    most = std::max(most, closest_point_on_segment(curve.points[i], p, q).squared_distance);
   }
   return std::sqrt(most);
 }

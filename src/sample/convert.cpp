@@ -96,7 +96,8 @@ void place_slab(const DexelSlab& slab, int axis, std::size_t index, std::vector<
     for (std::uint32_t c = first; c < last; ++c) {
       const std::size_t w_brick = slab.crossings[c].cell / brick_size;
       ++count[w_brick];
-      lowest = std::min(lowest, w_brick), highest = std::max(highest, w_brick);
+      lowest = std::min(lowest, w_brick);
+      highest = std::max(highest, w_brick);
     }
     std::uint32_t sum = first;
     for (std::size_t w = lowest; first < last && w <= highest; ++w) {
@@ -223,7 +224,9 @@ class BlockWriter {
     constexpr float half = brick_size / 2.0f;
     const unsigned axis = c.code.axis();
     const auto along = [&](unsigned a, unsigned cell) { return (cell - half + (axis == a ? c.t : 0.0f)) * h_; };
-    x_[out] = along(0, c.code.i()), y_[out] = along(1, c.code.j()), z_[out] = along(2, c.code.k());
+    x_[out] = along(0, c.code.i());
+    y_[out] = along(1, c.code.j());
+    z_[out] = along(2, c.code.k());
     edge_[out] = c.code;
     if (source_ != nullptr) source_[out] = c.source;
     const SourceNormal& source = normals_[c.source];
@@ -252,7 +255,9 @@ SampleSet sample_with(const TriDexel& solid, const std::vector<SourceNormal>& no
                       const ExecutionContext& context) {
   SampleSet set;
   set.grid = solid.grid;
-  set.unresolved = solid.unresolved, set.disagreements = solid.disagreements, set.cut_by_bounds = solid.cut_by_bounds;
+  set.unresolved = solid.unresolved;
+  set.disagreements = solid.disagreements;
+  set.cut_by_bounds = solid.cut_by_bounds;
   const PlacedAxes placed = place_all(solid, context);
   const std::vector<Piece> pieces = sorted_pieces(placed);
   const std::vector<std::uint32_t> first = make_blocks(pieces, set);

@@ -170,7 +170,8 @@ class DistanceLattice {
         const Vec3 p = point({at[0], at[1], at[2]});
         Nearest& node = node_[first + n];
         node = surface_.find(p, n == begin ? bound : bound + norm(p - last) * (1 + 1e-6) + 1e-9 * step_);
-        bound = std::abs(node.distance), last = p;
+        bound = std::abs(node.distance);
+        last = p;
       }
     });
     parallel_for(context, cells.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -217,7 +218,8 @@ class DistanceLattice {
     for (int l = 0; l <= top_; ++l) {
       const auto found = leaf_of_.find(key_of(cell_at(at, l), l));
       if (found == leaf_of_.end()) continue;
-      place.level = l, place.leaf = found->second;
+      place.level = l;
+      place.leaf = found->second;
       return;
     }
   }
@@ -255,7 +257,8 @@ class DistanceLattice {
     for (unsigned k = 0; k < 8; ++k) {
       const Nearest& node = node_[leaf.node[k]];
       const double away = norm(p - point(corner_of(cell, k, 1u << place.level)));
-      lo = std::max(lo, node.distance - away), hi = std::min(hi, node.distance + away);
+      lo = std::max(lo, node.distance - away);
+      hi = std::min(hi, node.distance + away);
       bound = std::min(bound, squared_norm(p - node.point));
     }
     const double margin = 0.01 * step_;
@@ -294,7 +297,8 @@ class DistanceField final : public Field {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const Nearest found = lattice_->find({points.x[i], points.y[i], points.z[i]}, place);
       values[i] = static_cast<float>(found.distance - offset_);
-      dx[i] = static_cast<float>(found.gradient.x), dy[i] = static_cast<float>(found.gradient.y),
+      dx[i] = static_cast<float>(found.gradient.x);
+      dy[i] = static_cast<float>(found.gradient.y);
       dz[i] = static_cast<float>(found.gradient.z);
     }
   }

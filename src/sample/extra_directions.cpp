@@ -51,7 +51,8 @@ double agreement(const TriDexel& rays) {
         int count = 0;
         for (std::size_t axis = 0; axis < 3; ++axis)
           count += inside_along(rays, axis, {double(i), double(j), double(k)});
-        agreed += count == 3, any += count > 0;
+        agreed += count == 3;
+        any += count > 0;
       }
   return any == 0 ? 0 : static_cast<double>(agreed) / static_cast<double>(any);
 }

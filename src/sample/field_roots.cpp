@@ -23,7 +23,8 @@ PackedNormal pack_normal(float x, float y, float z) {
   const float scale = 1.0f / (std::abs(x) + std::abs(y) + std::abs(z));
   float u = x * scale, v = y * scale;
   const float fu = std::copysign(1.0f - std::abs(v), u), fv = std::copysign(1.0f - std::abs(u), v);
-  u = z < 0 ? fu : u, v = z < 0 ? fv : v;
+  u = z < 0 ? fu : u;
+  v = z < 0 ? fv : v;
   const auto steps = [](float c) { return static_cast<std::uint32_t>(static_cast<int>(c * 32767.0f + 32767.5f)); };
   return {steps(u) | steps(v) << 16};
 }
@@ -39,18 +40,24 @@ float chord_root(const Bracket& b) {
 }
 
 void narrow(Bracket& b, float t, float f) {
-  if (inside(f) == b.code.lower_end_inside())
-    b.t_lo = t, b.f_lo = f;
-  else
-    b.t_hi = t, b.f_hi = f;
+  if (inside(f) == b.code.lower_end_inside()) {
+    b.t_lo = t;
+    b.f_lo = f;
+  } else {
+    b.t_hi = t;
+    b.f_hi = f;
+  }
 }
 
 }  // namespace
 
 void RootFinder::find(const Field& field, const FieldGrid& grid, std::vector<Bracket>& brackets, FieldPart& part) {
-  field_ = &field, grid_ = &grid, part_ = &part;
+  field_ = &field;
+  grid_ = &grid;
+  part_ = &part;
   for (std::vector<float>* v : {&part.x, &part.y, &part.z, &part.area}) v->resize(brackets.size());
-  part.normal.resize(brackets.size()), part.edge.resize(brackets.size());
+  part.normal.resize(brackets.size());
+  part.edge.resize(brackets.size());
   const std::size_t batch = std::max(min_batch, field.batch_size());
   for (std::size_t begin = 0; begin < brackets.size(); begin += batch)
     find_batch(std::span(brackets).subspan(begin, std::min(batch, brackets.size() - begin)), begin, part);
@@ -92,7 +99,9 @@ void RootFinder::place(std::size_t slot, const Bracket& bracket, float t) {
   const unsigned axis = code.axis();
   const Grid& grid = grid_->grid;
   p[axis] = static_cast<float>(grid.origin[static_cast<int>(axis)] + grid.spacing * (at[axis] + double{t}));
-  x_[slot] = p[0], y_[slot] = p[1], z_[slot] = p[2];
+  x_[slot] = p[0];
+  y_[slot] = p[1];
+  z_[slot] = p[2];
 }
 
 void RootFinder::evaluate(std::size_t n) {
@@ -118,11 +127,14 @@ void RootFinder::clip_to_bounds(std::span<Bracket> brackets) {
     const bool up = b.code.lower_end_inside();
     const float face = up ? b.t_hi : b.t_lo;
     if (inside(f_[s])) {
-      root.synthetic = true, root.t = face;
+      root.synthetic = true;
+      root.t = face;
     } else if (up) {
-      b.t_hi = probe(b), b.f_hi = f_[s];
+      b.t_hi = probe(b);
+      b.f_hi = f_[s];
     } else {
-      b.t_lo = probe(b), b.f_lo = f_[s];
+      b.t_lo = probe(b);
+      b.f_lo = f_[s];
     }
   }
 }
@@ -171,7 +183,9 @@ void RootFinder::first_guess(std::span<Bracket> brackets) {
   for (std::uint32_t i = 0; i < n; ++i) {
     Root& root = roots_[i];
     if (root.synthetic) continue;
-    root.n[0] = dx_[i], root.n[1] = dy_[i], root.n[2] = dz_[i];
+    root.n[0] = dx_[i];
+    root.n[1] = dy_[i];
+    root.n[2] = dz_[i];
     narrow(brackets[i], root.t, f_[i]);
     const float newton = root.t - f_[i] / (root.n[brackets[i].code.axis()] * h), chord = chord_root(brackets[i]);
     const bool known = std::isfinite(brackets[i].f_lo) && std::isfinite(brackets[i].f_hi);
@@ -219,8 +233,11 @@ void RootFinder::differentiate(std::span<const Bracket> brackets, std::span<cons
   field_->evaluate_gradient({std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n)},
                             std::span(f_).first(n), std::span(dx_).first(n), std::span(dy_).first(n),
                             std::span(dz_).first(n));
-  for (std::size_t s = 0; s < n; ++s)
-    roots_[which[s]].n[0] = dx_[s], roots_[which[s]].n[1] = dy_[s], roots_[which[s]].n[2] = dz_[s];
+  for (std::size_t s = 0; s < n; ++s) {
+    roots_[which[s]].n[0] = dx_[s];
+    roots_[which[s]].n[1] = dy_[s];
+    roots_[which[s]].n[2] = dz_[s];
+  }
 }
 
 void RootFinder::bisect(std::span<Bracket> brackets) {
@@ -239,21 +256,27 @@ void RootFinder::bisect(std::span<Bracket> brackets) {
 void RootFinder::normalize(std::span<const Bracket> brackets) {
   for (std::size_t i = 0; i < brackets.size(); ++i) {
     const Root& root = roots_[i];
-    dx_[i] = root.n[0], dy_[i] = root.n[1], dz_[i] = root.n[2];
+    dx_[i] = root.n[0];
+    dy_[i] = root.n[1];
+    dz_[i] = root.n[2];
   }
   for (std::size_t i = 0; i < brackets.size(); ++i) {
     // Scaled by the largest component first: squares must not overflow.
     const float largest = std::max(std::max(std::abs(dx_[i]), std::abs(dy_[i])), std::abs(dz_[i]));
     const float scale = 1.0f / largest, x = dx_[i] * scale, y = dy_[i] * scale, z = dz_[i] * scale;
     const float inverse = 1.0f / std::sqrt(x * x + y * y + z * z);
-    dx_[i] = x * inverse, dy_[i] = y * inverse, dz_[i] = z * inverse;
+    dx_[i] = x * inverse;
+    dy_[i] = y * inverse;
+    dz_[i] = z * inverse;
     f_[i] = inverse;
   }
   for (std::size_t i = 0; i < brackets.size(); ++i) {
     if (!roots_[i].synthetic && f_[i] > 0.0f && f_[i] <= 1.0f) continue;
     const float outward = brackets[i].code.lower_end_inside() ? 1.0f : -1.0f;
     const unsigned axis = brackets[i].code.axis();
-    dx_[i] = axis == 0 ? outward : 0.0f, dy_[i] = axis == 1 ? outward : 0.0f, dz_[i] = axis == 2 ? outward : 0.0f;
+    dx_[i] = axis == 0 ? outward : 0.0f;
+    dy_[i] = axis == 1 ? outward : 0.0f;
+    dz_[i] = axis == 2 ? outward : 0.0f;
   }
 }
 
@@ -266,7 +289,9 @@ void RootFinder::append(std::span<const Bracket> brackets, std::size_t first, Fi
     float at[3] = {code.i() - half, code.j() - half, code.k() - half};
     at[axis] += in_cell(roots_[i].t);
     const std::size_t out = first + i;
-    part.x[out] = at[0] * h, part.y[out] = at[1] * h, part.z[out] = at[2] * h;
+    part.x[out] = at[0] * h;
+    part.y[out] = at[1] * h;
+    part.z[out] = at[2] * h;
     part.area[out] = h * h * std::abs(axis == 0 ? dx_[i] : axis == 1 ? dy_[i] : dz_[i]);
     part.normal[out] = pack_normal(dx_[i], dy_[i], dz_[i]);
     part.edge[out] = code;

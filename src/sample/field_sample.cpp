@@ -123,7 +123,9 @@ class Sketch {
 
   // Replaces unknown cubes by their bricks that show a change of sign. Keeps the order.
   void look(Cubes& cubes) {
-    x_.clear(), y_.clear(), z_.clear();
+    x_.clear();
+    y_.clear();
+    z_.clear();
     for (const GridCube& c : cubes)
       if (c.unknown) place(c);
     values_.resize(x_.size());
@@ -244,7 +246,9 @@ SampleSet join_parts(const Grid& grid, const std::vector<FieldPart>& parts, cons
   std::uint32_t count = 0;
   for (const Piece& piece : pieces) {
     SampleBlock block = piece.block;
-    block.begin = count, count += piece.block.end - piece.block.begin, block.end = count;
+    block.begin = count;
+    count += piece.block.end - piece.block.begin;
+    block.end = count;
     set.blocks.push_back(block);
   }
   resize_samples(set, count, false, context);

@@ -53,7 +53,8 @@ FieldGrid make_field_grid(const Grid& grid, const Box& bounds) {
       lo = std::clamp((bounds.lo[axis] - grid.origin[axis]) / grid.spacing, 0.5, top);
       hi = std::clamp((bounds.hi[axis] - grid.origin[axis]) / grid.spacing, 0.5, top);
     }
-    result.face_lo[a] = lo, result.face_hi[a] = hi;
+    result.face_lo[a] = lo;
+    result.face_hi[a] = hi;
     result.first[a] = static_cast<std::int32_t>(std::ceil(lo));
     result.last[a] = static_cast<std::int32_t>(std::floor(hi));
   }
@@ -78,9 +79,11 @@ TileScanner::Tile TileScanner::tile_of(std::span<const GridCube> cubes, const Fi
       const auto corner = static_cast<std::int32_t>(cube.corner[a]);
       const std::int32_t first = corner + std::max(grid.first[a] - 1 - corner, 0) / 8 * 8;
       const std::int32_t last = std::min(corner + static_cast<std::int32_t>(cube.side), grid.last[a] + 1);
-      start = std::min(start, first), end = std::max(end, std::max(last, first) + 1);
+      start = std::min(start, first);
+      end = std::max(end, std::max(last, first) + 1);
     }
-    tile.start[a] = static_cast<std::uint32_t>(start), tile.points[a] = static_cast<std::uint32_t>(end - start);
+    tile.start[a] = static_cast<std::uint32_t>(start);
+    tile.points[a] = static_cast<std::uint32_t>(end - start);
   }
   return tile;
 }
@@ -93,7 +96,8 @@ std::size_t TileScanner::evaluate_all(const Field& field, const FieldGrid& grid,
   for (; done < cubes.size(); ++done) {
     Tile tile = tile_of(cubes.subspan(done, 1), grid);
     if (done > 0 && n + tile.count() > field.batch_size()) break;
-    tile.at = n, n += tile.count();
+    tile.at = n;
+    n += tile.count();
     tiles_.push_back(tile);
   }
   reserve(n, n);
@@ -106,7 +110,8 @@ std::size_t TileScanner::evaluate_all(const Field& field, const FieldGrid& grid,
 // The same; cubes of one node make a tile, and points that they share are asked for once.
 std::size_t TileScanner::evaluate_shared(const Field& field, const FieldGrid& grid, std::span<const GridCube> cubes) {
   constexpr std::size_t most = std::size_t{1} << 23;  // points of the tiles, asked for or not
-  tiles_.clear(), asked_.clear();
+  tiles_.clear();
+  asked_.clear();
   std::size_t done = 0, n = 0;
   while (done < cubes.size() && asked_.size() < field.batch_size()) {
     const auto node = node_of(cubes[done]);
@@ -114,7 +119,9 @@ std::size_t TileScanner::evaluate_shared(const Field& field, const FieldGrid& gr
     while (end < cubes.size() && node_of(cubes[end]) == node) ++end;
     Tile tile = tile_of(cubes.subspan(done, end - done), grid);
     if (done > 0 && n + tile.count() > most) break;
-    tile.at = n, n += tile.count(), done = end;
+    tile.at = n;
+    n += tile.count();
+    done = end;
     reserve(n, 0);
     place_shared(tile, grid);
     tiles_.push_back(tile);
@@ -122,13 +129,23 @@ std::size_t TileScanner::evaluate_shared(const Field& field, const FieldGrid& gr
   const std::size_t count = asked_.size();
   values_.resize(count);
   field.evaluate({std::span(x_).first(count), std::span(y_).first(count), std::span(z_).first(count)}, values_);
-  for (std::size_t i = 0; i < count; ++i) f_[asked_[i]] = values_[i], inside_[asked_[i]] = values_[i] < 0.0f ? 1 : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    f_[asked_[i]] = values_[i];
+    inside_[asked_[i]] = values_[i] < 0.0f ? 1 : 0;
+  }
   return done;
 }
 
 void TileScanner::reserve(std::size_t points, std::size_t asked) {
-  if (f_.size() < points) f_.resize(points), inside_.resize(points + 8);
-  if (x_.size() < asked) x_.resize(asked), y_.resize(asked), z_.resize(asked);
+  if (f_.size() < points) {
+    f_.resize(points);
+    inside_.resize(points + 8);
+  }
+  if (x_.size() < asked) {
+    x_.resize(asked);
+    y_.resize(asked);
+    z_.resize(asked);
+  }
 }
 
 // Marks the points of all cubes, then asks for what is marked.
@@ -150,7 +167,8 @@ void TileScanner::place_shared(const Tile& tile, const FieldGrid& grid) {
       for (std::uint32_t k = 0; k < tile.points[2]; ++k, ++at) {
         if (inside_[at] == 0) continue;
         asked_.push_back(at);
-        x_[next] = grid.coordinate[0][tile.start[0] + i], y_[next] = grid.coordinate[1][tile.start[1] + j],
+        x_[next] = grid.coordinate[0][tile.start[0] + i];
+        y_[next] = grid.coordinate[1][tile.start[1] + j];
         z_[next] = grid.coordinate[2][tile.start[2] + k];
         ++next;
       }
@@ -225,7 +243,8 @@ void TileScanner::scan_brick(const Tile& tile, const FieldGrid& grid, const std:
         const std::uint8_t* bytes = &inside_[base + i * stride[0] + j * stride[1]];
         mask[i][j] = (pack_bytes(bytes) | static_cast<unsigned>(bytes[8]) << 8) & within_k;
       }
-      any |= mask[i][j], all &= mask[i][j];
+      any |= mask[i][j];
+      all &= mask[i][j];
     }
   }
   if (any == 0 || all == 511) return;
@@ -241,20 +260,24 @@ void TileScanner::scan_brick(const Tile& tile, const FieldGrid& grid, const std:
           Bracket bracket;
           bracket.code = EdgeCode(axis, i, j, k, (here >> k & 1) != 0);
           bracket.block = static_cast<std::uint32_t>(part.blocks.size());
-          bracket.f_lo = f_[at], bracket.f_hi = f_[at + stride[axis]];
+          bracket.f_lo = f_[at];
+          bracket.f_hi = f_[at + stride[axis]];
           const unsigned index[3] = {i, j, k};
           const std::int32_t lower = start[axis] + static_cast<std::int32_t>(index[axis]);
           if (!grid.within(axis, lower)) {
-            bracket.on_bounds = true, bracket.t_lo = static_cast<float>(grid.face_lo[axis] - lower);
+            bracket.on_bounds = true;
+            bracket.t_lo = static_cast<float>(grid.face_lo[axis] - lower);
           } else if (!grid.within(axis, lower + 1)) {
-            bracket.on_bounds = true, bracket.t_hi = static_cast<float>(grid.face_hi[axis] - lower);
+            bracket.on_bounds = true;
+            bracket.t_hi = static_cast<float>(grid.face_hi[axis] - lower);
           }
           brackets.push_back(bracket);
         }
       }
   if (brackets.size() == first) return;
   SampleBlock block;
-  block.begin = static_cast<std::uint32_t>(first), block.end = static_cast<std::uint32_t>(brackets.size());
+  block.begin = static_cast<std::uint32_t>(first);
+  block.end = static_cast<std::uint32_t>(brackets.size());
   for (unsigned a = 0; a < 3; ++a) block.brick[a] = static_cast<std::uint16_t>(start[a] / 8);
   part.blocks.push_back(block);
 }

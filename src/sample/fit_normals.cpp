@@ -1,8 +1,8 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "geometry/plane_fit.h"
 #include "grid/morton.h"
 #include "grid/tri_dexel.h"
 #include "sample/field_parts.h"
@@ -103,29 +103,20 @@ class Neighbourhood {
 // Plane through the samples within kRadius, each counted the less the farther it is. Samples that cross the same axis
 // the other way belong to another sheet.
 Vec3 fitted_normal(const Neighbourhood& near, const Vec3& at, EdgeCode code) {
-  Vec3 outward, mean;
-  double sum = 0;
-  std::size_t count = 0;
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  Vec3 outward;
+  PlaneFit fit;
   near.around(code, [&](const Neighbourhood::Point& p) {
     const Vec3 d = p.at - at;
     const double w = 1.0 - squared_norm(d) / (radius * radius);
     if (w <= 0 || (p.code.axis() == code.axis() && p.code.lower_end_inside() != code.lower_end_inside())) return;
     outward[static_cast<int>(p.code.axis())] += w * sign_of(p.code);
-    mean += w * d, sum += w, ++count;
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) moments(r, c) += w * d[r] * d[c];
+    fit.add(d, w);
   });
   Vec3 normal = normalized(outward);
-  if (count >= fewest) {
-    mean *= 1 / sum;
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) moments(r, c) = moments(r, c) / sum - mean[r] * mean[c];
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
-    const Eigen::Vector3d v = solver.eigenvectors().col(0);
-    const Vec3 plane{v[0], v[1], v[2]};
+  if (fit.count() >= fewest) {
+    const PlaneFit::Plane plane = fit.plane();
     // Samples along one line say nothing of a plane.
-    if (solver.eigenvalues()[1] > 1e-3) normal = dot(plane, outward) < 0 ? -plane : plane;
+    if (plane.variance[1] > 1e-3) normal = dot(plane.normal, outward) < 0 ? -plane.normal : plane.normal;
   }
   // The normal never points against the sample's own change of sign.
   const int axis = static_cast<int>(code.axis());

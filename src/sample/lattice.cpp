@@ -25,7 +25,8 @@ void set_range(Lattice& lattice, const Grid& grid, const Box& bounds) {
       lo = std::clamp((bounds.lo[a] - grid.origin[a]) / grid.spacing, lo, top);
       hi = std::clamp((bounds.hi[a] - grid.origin[a]) / grid.spacing, 0.5, top);
     }
-    lattice.face_lo[at(a)] = lo, lattice.face_hi[at(a)] = hi;
+    lattice.face_lo[at(a)] = lo;
+    lattice.face_hi[at(a)] = hi;
     lattice.first[at(a)] = static_cast<std::int32_t>(std::ceil(lo));
     lattice.last[at(a)] = static_cast<std::int32_t>(std::floor(hi));
   }

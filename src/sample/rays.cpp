@@ -69,7 +69,10 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
     for (; i < hits.size() && hits[i].cell == cell; ++i) {
       const bool was_inside = is_inside();
       winding += hits[i].step;
-      if (is_inside() != was_inside) ++changes, last = i;
+      if (is_inside() != was_inside) {
+        ++changes;
+        last = i;
+      }
     }
     // The change that counts is the last one: it is next to the upper grid point's side.
     const bool changed = is_inside() != inside;

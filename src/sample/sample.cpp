@@ -9,7 +9,7 @@
 #include "grid/tri_dexel.h"
 #include "sample/distance_field.h"
 #include "sample/field_parts.h"
-#include "shape/sampler.h"
+#include "shape/ray_source.h"
 
 namespace evenmesh {
 namespace {
@@ -46,7 +46,10 @@ SampleSet sample_boolean(const Compound& compound, const Grid& grid, ExecutionCo
 SampleSet sample_offset(const Compound& compound, const Grid& grid, const Box& bounds, ExecutionContext& context) {
   const Shape& operand = compound.operands[0];
   Box reach = bounds;
-  for (int i = 0; i < 3; ++i) reach.lo[i] -= std::abs(compound.distance), reach.hi[i] += std::abs(compound.distance);
+  for (int i = 0; i < 3; ++i) {
+    reach.lo[i] -= std::abs(compound.distance);
+    reach.hi[i] += std::abs(compound.distance);
+  }
   const Box box = operand.bounds.empty() ? reach : common(operand.bounds, reach);
   SampleSet none;
   none.grid = grid;
@@ -66,7 +69,7 @@ SampleSet sample_any(const Shape& shape, const Grid& grid, const Box& bounds, Ex
   if (const Compound* compound = shape.compound())
     return compound->kind == Compound::Kind::offset ? sample_offset(*compound, grid, bounds, context)
                                                     : sample_boolean(*compound, grid, context);
-  if (const Sampler* sampler = shape.sampler()) return sampler->sample(grid, bounds, context);
+  if (const RaySource* sampler = shape.ray_source()) return sampler->sample(grid, bounds, context);
   if (!shape.mesh()) throw InvalidInput(shape.name + " has no inside: give the shape a mesh or a field");
   return sample_dexels(scan_mesh(*shape.mesh(), grid, context, bounds, shape.winding), *shape.mesh(), context);
 }

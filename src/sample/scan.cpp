@@ -48,7 +48,9 @@ class RowEdge {
   RowEdge(std::int32_t ap, std::int32_t aq, std::int32_t bp, std::int32_t bq, int bits)
       : p_(ap), q_(aq), dp_(std::int64_t{bp} - ap), dq_(std::int64_t{bq} - aq), bits_(bits) {
     const double unit = 1.0 / (1 << bits);
-    start_ = ap * unit, row_ = aq * unit, slope_ = static_cast<double>(dp_) / static_cast<double>(dq_);
+    start_ = ap * unit;
+    row_ = aq * unit;
+    slope_ = static_cast<double>(dp_) / static_cast<double>(dq_);
   }
 
   // First p whose shifted grid point lies beyond the edge on row q: those with p ≥ edge, because εp ≫ εq. Valid for
@@ -77,14 +79,21 @@ class DepthPlane {
     const auto d = [](std::int32_t v, std::int32_t u) { return std::int64_t{v} - u; };
     const std::int64_t ux = d(b[0], a[0]), uy = d(b[1], a[1]), uz = d(b[2], a[2]);
     const std::int64_t vx = d(c[0], a[0]), vy = d(c[1], a[1]), vz = d(c[2], a[2]);
-    normal_[0] = uy * vz - uz * vy, normal_[1] = uz * vx - ux * vz, normal_[2] = ux * vy - uy * vx;
+    normal_[0] = uy * vz - uz * vy;
+    normal_[1] = uz * vx - ux * vz;
+    normal_[2] = ux * vy - uy * vx;
     w_ = static_cast<std::size_t>(axis);
     if (normal_[w_] == 0) return false;
-    p_ = static_cast<std::size_t>(dexel_p_axis[w_]), q_ = static_cast<std::size_t>(dexel_q_axis[w_]);
-    anchor_ = a, bits_ = bits;
+    p_ = static_cast<std::size_t>(dexel_p_axis[w_]);
+    q_ = static_cast<std::size_t>(dexel_q_axis[w_]);
+    anchor_ = a;
+    bits_ = bits;
     const double unit = 1.0 / (1 << bits), nw = static_cast<double>(normal_[w_]);
-    slope_p_ = -static_cast<double>(normal_[p_]) / nw, slope_q_ = -static_cast<double>(normal_[q_]) / nw;
-    ap_ = a[p_] * unit, aq_ = a[q_] * unit, aw_ = a[w_] * unit;
+    slope_p_ = -static_cast<double>(normal_[p_]) / nw;
+    slope_q_ = -static_cast<double>(normal_[q_]) / nw;
+    ap_ = a[p_] * unit;
+    aq_ = a[q_] * unit;
+    aw_ = a[w_] * unit;
     const auto extent = [&](std::size_t i) {
       return unit * static_cast<double>(std::max({a[i], b[i], c[i]}) - std::int64_t{std::min({a[i], b[i], c[i]})});
     };
@@ -129,9 +138,15 @@ class DepthPlane {
     const Wide numerator = -offset(p, q) + Wide{normal_[w_]} * anchor_[w_];
     const Wide denominator = Wide{normal_[w_]} << bits_;
     Wide k = numerator / denominator, rest = numerator % denominator;
-    if (rest != 0 && (rest < 0) != (denominator < 0)) k -= 1, rest += denominator;
+    if (rest != 0 && (rest < 0) != (denominator < 0)) {
+      k -= 1;
+      rest += denominator;
+    }
     t = static_cast<double>(rest) / static_cast<double>(denominator);
-    if (rest == 0 && !above(p, q, static_cast<int>(k))) k -= 1, t = 1.0;
+    if (rest == 0 && !above(p, q, static_cast<int>(k))) {
+      k -= 1;
+      t = 1.0;
+    }
     return static_cast<int>(k);
   }
 
@@ -189,13 +204,15 @@ class SlabScanner {
     for (int q = begin; q < end; ++q) {
       int from = one.first_beyond(q), to = other.first_beyond(q);
       if (from > to) std::swap(from, to);
-      from = std::max(from, lattice_.first[p_]), to = std::min(to, lattice_.last[p_] + 1);
+      from = std::max(from, lattice_.first[p_]);
+      to = std::min(to, lattice_.last[p_] + 1);
       if (from < to) scan_run(source, q, from, to);
     }
   }
 
   void scan_run(std::uint32_t source, int q, int from, int to) {
-    p_begin_ = std::min(p_begin_, from), p_end_ = std::max(p_end_, to);
+    p_begin_ = std::min(p_begin_, from);
+    p_end_ = std::max(p_end_, to);
     const double base = plane_.row_start(q);
     const auto step = static_cast<std::int8_t>(plane_.step());
     for (int p = from; p < to; ++p) {

@@ -43,7 +43,9 @@ struct BrickSigns {
     for (unsigned u = 0; u < n; ++u)
       for (unsigned v = 0; v < n; ++v) {
         std::array<unsigned, 3> p{};
-        p[axis] = above ? n - 1 : 0, p[(axis + 1) % 3] = u, p[(axis + 2) % 3] = v;
+        p[axis] = above ? n - 1 : 0;
+        p[(axis + 1) % 3] = u;
+        p[(axis + 2) % 3] = v;
         const std::size_t point = at(p[0], p[1], p[2]);
         const bool sign = above ? inside[point] != crossed[axis][point] : inside[point];
         if (u == 0 && v == 0) first = sign;

@@ -265,7 +265,10 @@ class Rebuilder {
       for (const DexelCrossing& hit :
            raw_[a].ray(at[static_cast<std::size_t>(dexel_p_axis[a])], at[static_cast<std::size_t>(dexel_q_axis[a])])) {
         const std::uint32_t away = hit.cell > at[a] ? hit.cell - at[a] : at[a] - hit.cell;
-        if (away < nearest) nearest = away, source = hit.source;
+        if (away < nearest) {
+          nearest = away;
+          source = hit.source;
+        }
       }
     return source;
   }

@@ -158,15 +158,19 @@ class Cutter {
     merge();
     std::vector<std::vector<std::uint32_t>> cuts(edges_.size());
     std::size_t count = 0;
+    const auto cut_at = [&](std::uint32_t edge, std::uint32_t p) {
+      if (p == none) return;
+      cuts[edge].push_back(p);
+      ++count;
+    };
     Pairs(edges_, points_).each([&](std::uint32_t i, std::uint32_t j) {
       const Meeting m = meeting(points_, edges_[i], edges_[j]);
-      for (const std::uint32_t p : m.first)
-        if (p != none) cuts[i].push_back(p), ++count;
-      for (const std::uint32_t p : m.second)
-        if (p != none) cuts[j].push_back(p), ++count;
+      for (const std::uint32_t p : m.first) cut_at(i, p);
+      for (const std::uint32_t p : m.second) cut_at(j, p);
       if (m.crossing) {
         const std::uint32_t p = points_.number(crossing(edges_[i], edges_[j]));
-        cuts[i].push_back(p), cuts[j].push_back(p), count += 2;
+        cut_at(i, p);
+        cut_at(j, p);
       }
       if (count > max_edges) refuse();
       return true;

@@ -152,7 +152,10 @@ class CsgReader {
     const Outline outline = flat_.united(n.children);
     double left = 0, right = 0;
     for (const Contour& contour : outline.contours)
-      for (const Point2& p : contour) left = std::min(left, p.x), right = std::max(right, p.x);
+      for (const Point2& p : contour) {
+        left = std::min(left, p.x);
+        right = std::max(right, p.x);
+      }
     if (left < 0 && right > 0) {
       fail_in_csg(source_, n.at, "the flat shape lies on both sides of the axis (x = 0); move it to one side");
     }

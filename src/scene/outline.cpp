@@ -196,7 +196,10 @@ class EarClipper {
   bool clip(const Ring& ring) {
     const std::size_t n = ring.size();
     std::vector<std::size_t> next(n), previous(n);
-    for (std::size_t i = 0; i < n; ++i) next[i] = (i + 1) % n, previous[i] = (i + n - 1) % n;
+    for (std::size_t i = 0; i < n; ++i) {
+      next[i] = (i + 1) % n;
+      previous[i] = (i + n - 1) % n;
+    }
     std::size_t left = n, at = 0, tried = 0;
     bool flat_too = false;  // corners of 180° only when nothing else is left
     while (left > 2) {
@@ -205,15 +208,19 @@ class EarClipper {
       const int turn = side(ring[a], ring[at], ring[c]);
       if ((turn > 0 && empty_ear(ring, next, a, at, c)) || (turn == 0 && flat_too)) {
         triangles_.push_back({ring[a], ring[at], ring[c]});
-        next[a] = c, previous[c] = a;
-        --left, tried = 0, flat_too = false;
+        next[a] = c;
+        previous[c] = a;
+        --left;
+        tried = 0;
+        flat_too = false;
         at = c;
         continue;
       }
       at = c;
       if (++tried < left) continue;
       if (flat_too) return false;
-      flat_too = true, tried = 0;
+      flat_too = true;
+      tried = 0;
     }
     return true;
   }

@@ -85,7 +85,8 @@ Shape read_glsl(const fs::path& path, const GlslOptions& options) {
 Shape read_raster(const fs::path& vertex, const fs::path& fragment, RasterOptions options, std::string name) {
   const auto read = [](const fs::path& path, std::string& text, std::string& title) {
     if (path.empty()) return;
-    text = load_file(path).view(), title = name_of_input(path);
+    text = load_file(path).view();
+    title = name_of_input(path);
     if (text.empty()) throw UnusableInput(title + ": is empty; give 'default' for the built-in shader");
   };
   read(vertex, options.vertex, options.vertex_name);

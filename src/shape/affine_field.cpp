@@ -25,7 +25,9 @@ class AffineField final : public Field {
     field_->evaluate_gradient(moved.batch(), values, dx, dy, dz);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const Vec3 g = gradient({dx[i], dy[i], dz[i]});
-      dx[i] = static_cast<float>(g.x), dy[i] = static_cast<float>(g.y), dz[i] = static_cast<float>(g.z);
+      dx[i] = static_cast<float>(g.x);
+      dy[i] = static_cast<float>(g.y);
+      dz[i] = static_cast<float>(g.z);
     }
   }
   Interval evaluate(const Box& box) const override { return field_->evaluate(transformed_box(box, back_)); }
@@ -64,7 +66,9 @@ class AffineField final : public Field {
     Moved(const PointBatch& points, const Affine& by) : x(points.x.size()), y(x.size()), z(x.size()) {
       for (std::size_t i = 0; i < x.size(); ++i) {
         const Vec3 p = by({points.x[i], points.y[i], points.z[i]});
-        x[i] = static_cast<float>(p.x), y[i] = static_cast<float>(p.y), z[i] = static_cast<float>(p.z);
+        x[i] = static_cast<float>(p.x);
+        y[i] = static_cast<float>(p.y);
+        z[i] = static_cast<float>(p.z);
       }
     }
     PointBatch batch() const { return {x, y, z}; }
@@ -125,7 +129,10 @@ class BoxedField final : public Field {
     const double value = field_->evaluate(point, gradient);
     const Wall wall = wall_near(point, box_);
     if (value > wall.distance) return value;
-    if (gradient) *gradient = {}, (*gradient)[wall.axis] = wall.sign;
+    if (gradient) {
+      *gradient = {};
+      (*gradient)[wall.axis] = wall.sign;
+    }
     return wall.distance;
   }
   std::shared_ptr<const Field> specialized(const Box& box) const override {

@@ -43,9 +43,13 @@ bool each_undecided(const Field& field, std::vector<Cell> cells, const Skip& ski
   std::vector<Interval> ranges;
   std::reverse(cells.begin(), cells.end());
   while (!cells.empty()) {
-    some.clear(), boxes.clear();
+    some.clear();
+    boxes.clear();
     for (; !cells.empty() && some.size() < together; cells.pop_back())
-      if (!skip(cells.back().box)) some.push_back(cells.back()), boxes.push_back(cells.back().box);
+      if (!skip(cells.back().box)) {
+        some.push_back(cells.back());
+        boxes.push_back(cells.back().box);
+      }
     if (some.empty()) continue;
     ranges.resize(boxes.size());
     field.enclose(boxes, ranges);
@@ -70,7 +74,9 @@ std::size_t middles_inside(const Field& field, const std::vector<Cell>& cells) {
   std::vector<float> x, y, z, values(cells.size());
   for (const Cell& cell : cells) {
     const Vec3 p = cell.box.center();
-    x.push_back(static_cast<float>(p.x)), y.push_back(static_cast<float>(p.y)), z.push_back(static_cast<float>(p.z));
+    x.push_back(static_cast<float>(p.x));
+    y.push_back(static_cast<float>(p.y));
+    z.push_back(static_cast<float>(p.z));
   }
   field.evaluate(PointBatch{x, y, z}, values);
   return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), is_negative));
@@ -124,7 +130,10 @@ void add_possible_cells(const Field& field, const Box& box, Box& found) {
       field, {{box, shrink_depth}}, [&](const Box& cell) { return found.contains(cell.lo) && found.contains(cell.hi); },
       [&](const std::vector<Cell>& some) {
         for (const Cell& cell : some)
-          if (cell.depth == 0) found.add(cell.box.lo), found.add(cell.box.hi);
+          if (cell.depth == 0) {
+            found.add(cell.box.lo);
+            found.add(cell.box.hi);
+          }
         return true;
       });
 }
@@ -174,7 +183,7 @@ Box common_bounds(const std::vector<Shape>& operands) {
 Box find_bounds(const Shape& shape) {
   if (!shape.bounds.empty()) return shape.bounds;
   if (const Field* field = shape.field()) return find_bounds(*field);
-  if (shape.sampler())
+  if (shape.ray_source())
     throw InvalidInput("'" + shape.name + "' does not tell where it is: give --bounds x0,y0,z0,x1,y1,z1");
   const Compound* compound = shape.compound();
   if (compound == nullptr) return shape.bounds;
@@ -183,7 +192,10 @@ Box find_bounds(const Shape& shape) {
   if (compound->kind == Compound::Kind::unite)
     for (const Shape& operand : compound->operands) box = united(box, find_bounds(operand));
   if (compound->kind == Compound::Kind::offset && compound->distance > 0)
-    for (int a = 0; a < 3; ++a) box.lo[a] -= compound->distance, box.hi[a] += compound->distance;
+    for (int a = 0; a < 3; ++a) {
+      box.lo[a] -= compound->distance;
+      box.hi[a] += compound->distance;
+    }
   return box;
 }
 

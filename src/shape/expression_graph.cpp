@@ -167,8 +167,14 @@ NodeId GraphBuilder::mul(NodeId a, NodeId b) {
   if (a == b) return square(a);
   const Linear p = linear(a), q = linear(b);
   double scale = 1;
-  if (p.offset == 0) scale *= p.scale, a = p.base;
-  if (q.offset == 0) scale *= q.scale, b = q.base;
+  if (p.offset == 0) {
+    scale *= p.scale;
+    a = p.base;
+  }
+  if (q.offset == 0) {
+    scale *= q.scale;
+    b = q.base;
+  }
   if (a == b) return affine(square(a), scale, 0.0);
   if (a > b) std::swap(a, b);
   return affine(node(Op::mul, a, b), scale, 0.0);
@@ -213,8 +219,14 @@ NodeId GraphBuilder::div(NodeId a, NodeId b) {
   if (is_constant(a) && is_constant(b)) return constant(nodes_[a].s / nodes_[b].s);
   const Linear p = linear(a), q = linear(b);
   double scale = 1;
-  if (p.offset == 0 && p.scale != 0) scale *= p.scale, a = p.base;
-  if (q.offset == 0 && q.scale != 0) scale /= q.scale, b = q.base;
+  if (p.offset == 0 && p.scale != 0) {
+    scale *= p.scale;
+    a = p.base;
+  }
+  if (q.offset == 0 && q.scale != 0) {
+    scale /= q.scale;
+    b = q.base;
+  }
   return affine(node(Op::div, a, b), scale, 0.0);
 }
 

@@ -12,7 +12,9 @@ class Asker {
   explicit Asker(const Field& field) : field_(field), batch_(field.batch_size()) {}
 
   void ask(float x, float y, float z) {
-    x_.push_back(x), y_.push_back(y), z_.push_back(z);
+    x_.push_back(x);
+    y_.push_back(y);
+    z_.push_back(z);
     if (x_.size() >= batch_) flush();
   }
   InsidePoints result() {
@@ -31,8 +33,13 @@ class Asker {
       found_.least = value < found_.least ? value : found_.least;
     }
     for (std::size_t i = 0; i < x_.size(); ++i)
-      if (values_[i] < 0) found_.box.add({x_[i], y_[i], z_[i]}), ++found_.inside;
-    x_.clear(), y_.clear(), z_.clear();
+      if (values_[i] < 0) {
+        found_.box.add({x_[i], y_[i], z_[i]});
+        ++found_.inside;
+      }
+    x_.clear();
+    y_.clear();
+    z_.clear();
   }
 
   const Field& field_;

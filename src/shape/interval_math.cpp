@@ -148,7 +148,10 @@ Enclosure raised(const Enclosure& a, const Enclosure& b) {
   Enclosure result = exponential(product);
   const double loss = 1e-5 * (std::isfinite(result.hi) ? result.hi : 0.0);
   result = widened(result.lo - 1e-5 * result.lo, result.hi + loss, result.may_be_nan);
-  if (has_zero(b)) result.lo = std::min(result.lo, 1.0), result.hi = std::max(result.hi, 1.0);
+  if (has_zero(b)) {
+    result.lo = std::min(result.lo, 1.0);
+    result.hi = std::max(result.hi, 1.0);
+  }
   return result;
 }
 
@@ -166,7 +169,10 @@ Enclosure remainder(const Enclosure& a, const Enclosure& b) {
 
 /// min(a, b) takes b where a is not a number.
 Enclosure chosen(double lo, double hi, const Enclosure& a, const Enclosure& b) {
-  if (a.may_be_nan) lo = std::min(lo, b.lo), hi = std::max(hi, b.hi);
+  if (a.may_be_nan) {
+    lo = std::min(lo, b.lo);
+    hi = std::max(hi, b.hi);
+  }
   return {lo, hi, b.may_be_nan};
 }
 

@@ -101,7 +101,10 @@ class Lexer {
     fail_at(text_, column_, "unexpected character");
   }
 
-  void advance(std::size_t bytes, std::size_t columns) { at_ += bytes, column_ += columns; }
+  void advance(std::size_t bytes, std::size_t columns) {
+    at_ += bytes;
+    column_ += columns;
+  }
 
   void push(char symbol, std::size_t bytes, std::size_t columns, std::string_view name = {}, double value = 0) {
     tokens_.push_back({symbol, column_, value, name.empty() ? text_.substr(at_, bytes) : name});

@@ -6,7 +6,7 @@
 #include "evenmesh/error.h"
 #include "shape/affine_field.h"
 #include "shape/bounds.h"
-#include "shape/sampler.h"
+#include "shape/ray_source.h"
 
 namespace evenmesh {
 namespace {
@@ -114,7 +114,7 @@ Shape transformed(const Shape& shape, const Affine& transform) {
     return moved;
   }
   Shape moved = shape;
-  if (const Sampler* sampler = shape.sampler()) {
+  if (const RaySource* sampler = shape.ray_source()) {
     moved.bounds = transformed_box(shape.bounds, transform);
     moved.what = sampler->moved(transform);
     return moved;

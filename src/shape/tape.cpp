@@ -48,7 +48,8 @@ Tape compile_tape(const ExpressionGraph& graph) {
     }
     Instruction code{n.op, mask[n.a], operands > 1 ? mask[n.b] : std::uint8_t{0}, 0, place[n.a], 0, 0, 0};
     code.b = operands > 1 ? place[n.b] : code.a;
-    code.s = static_cast<float>(n.s), code.t = static_cast<float>(n.t);
+    code.s = static_cast<float>(n.s);
+    code.t = static_cast<float>(n.t);
     // An operand that dies here gives its register to the result: kernels read before they write.
     const auto release = [&](NodeId operand) {
       if (last[operand] == i && place[operand] >= tape.first_temporary()) unused.push_back(place[operand]);

@@ -121,6 +121,15 @@ HWY_NOINLINE void run_values(const Instruction& c, std::size_t n, float* dst, co
   }
 }
 
+HWY_NOINLINE void run_atan2_factors(std::size_t n, const float* a, const float* b, float* fa, float* fb) {
+  const auto over_squares = [](Floats w, Floats u, Floats v) HWY_ATTR {
+    const Floats squares = hn::Add(hn::Mul(u, u), hn::Mul(v, v));
+    return hn::IfThenElseZero(hn::Gt(squares, hn::Zero(FloatTag())), hn::Div(w, squares));
+  };
+  each(n, fa, a, b, [=](Floats u, Floats v) HWY_ATTR { return over_squares(v, u, v); });
+  each(n, fb, a, b, [=](Floats u, Floats v) HWY_ATTR { return over_squares(hn::Neg(u), u, v); });
+}
+
 /// ∂op/∂a and ∂op/∂b at each point, for the operations whose factors are not numbers or operands themselves.
 HWY_NOINLINE void run_factors(const Instruction& c, std::size_t n, const float* a, const float* b, float* fa,
                               float* fb) {
@@ -151,14 +160,8 @@ HWY_NOINLINE void run_factors(const Instruction& c, std::size_t n, const float* 
     }
     case Op::atan:
       return each(n, fa, a, [=](Floats u) HWY_ATTR { return hn::Div(one, hn::Add(one, hn::Mul(u, u))); });
-    case Op::atan2: {
-      const auto over_squares = [=](Floats w, Floats u, Floats v) HWY_ATTR {
-        const Floats squares = hn::Add(hn::Mul(u, u), hn::Mul(v, v));
-        return hn::IfThenElseZero(hn::Gt(squares, zero), hn::Div(w, squares));
-      };
-      each(n, fa, a, b, [=](Floats u, Floats v) HWY_ATTR { return over_squares(v, u, v); });
-      return each(n, fb, a, b, [=](Floats u, Floats v) HWY_ATTR { return over_squares(hn::Neg(u), u, v); });
-    }
+    case Op::atan2:
+      return run_atan2_factors(n, a, b, fa, fb);
     case Op::exp:
       return each(n, fa, a, [](Floats u) HWY_ATTR { return exponential(u); });
     case Op::log:
@@ -230,9 +233,10 @@ HWY_NOINLINE void run_gradient(const Instruction& c, std::size_t n, const Planes
                                float* factors) {
   const std::uint8_t mask = c.op == Op::floor || c.op == Op::sign ? 0 : c.mask_a | c.mask_b;
   const float *fa = factors, *fb = factors + tape_chunk;
-  if (c.op == Op::mul)
-    fa = b[0], fb = a[0];
-  else if (mask != 0)
+  if (c.op == Op::mul) {
+    fa = b[0];
+    fb = a[0];
+  } else if (mask != 0)
     run_factors(c, n, a[0], b[0], factors, factors + tape_chunk);
   for (int axis = 0; axis < 3; ++axis) {
     if ((mask >> axis & 1) == 0) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "grid/blocks.h"
 #include "grid/morton.h"
@@ -220,9 +221,13 @@ class Union {
         ball = b;
       }
       if (farthest <= t) break;
-      t = farthest, moved = true;
+      t = farthest;
+      moved = true;
     }
-    if (t >= 1 || (old == none && !moved)) t = std::min(t, 0.999), normal = step / h;  // the border cuts the ball
+    if (t >= 1 || (old == none && !moved)) {  // the border cuts the ball
+      t = std::min(t, 0.999);
+      normal = step / h;
+    }
     const Vec3 p = from + t * step - center;
     const bool keep = old != none && !moved;
     const std::size_t at_end = out.size();
@@ -308,25 +313,16 @@ SampleSet unite_balls(const SampleSet& samples, std::span<const Ball> balls, Exe
   return Union(samples, balls, context).result();
 }
 
-BallIndex::BallIndex(std::vector<Ball> balls, double largest_radius) : side_(largest_radius) {
-  for (const Ball& b : balls) side_ = std::max(side_, b.radius);
+BallIndex::BallIndex(std::vector<Ball> balls, double largest_radius)
+    : largest_(std::accumulate(balls.begin(), balls.end(), largest_radius,
+                               [](double largest, const Ball& b) { return std::max(largest, b.radius); })),
+      centers_(largest_) {
   for (const Ball& b : balls) add(b);
 }
 
 void BallIndex::add(const Ball& ball) {
-  const auto c = cell_of(ball.center);
-  cells_[key(c[0], c[1], c[2])].push_back(static_cast<std::uint32_t>(balls_.size()));
+  centers_.add(ball.center);
   balls_.push_back(ball);
-}
-
-std::array<std::int64_t, 3> BallIndex::cell_of(const Vec3& p) const {
-  return {static_cast<std::int64_t>(std::floor(p.x / side_)), static_cast<std::int64_t>(std::floor(p.y / side_)),
-          static_cast<std::int64_t>(std::floor(p.z / side_))};
-}
-
-std::int64_t BallIndex::key(std::int64_t i, std::int64_t j, std::int64_t k) {
-  constexpr std::int64_t mask = (1 << 21) - 1;
-  return (i & mask) << 42 | (j & mask) << 21 | (k & mask);
 }
 
 Vec3 BallIndex::outside(Vec3 p) const {
@@ -336,9 +332,12 @@ Vec3 BallIndex::outside(Vec3 p) const {
     near(p, 0, [&](std::uint32_t b) {
       const Vec3 d = p - balls_[b].center;
       const double length = norm(d), depth = balls_[b].radius - length;
-      if (depth > deepest && length > 0) deepest = depth, out = balls_[b].center + d * (balls_[b].radius / length);
+      if (depth > deepest && length > 0) {
+        deepest = depth;
+        out = balls_[b].center + d * (balls_[b].radius / length);
+      }
     });
-    if (deepest <= 1e-9 * side_) return p;
+    if (deepest <= 1e-9 * largest_) return p;
     p = out;
   }
   return p;

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "core/parallel.h"
+#include "geometry/point_hash.h"
 #include "grid/sample_set.h"
 
 namespace evenmesh {
@@ -36,24 +36,17 @@ class BallIndex {
   template <typename Visit>
   void near(const Vec3& p, double reach, const Visit& visit) const {
     if (balls_.empty()) return;
-    const auto lo = cell_of(p - Vec3{reach, reach, reach}), hi = cell_of(p + Vec3{reach, reach, reach});
-    for (std::int64_t k = lo[2] - 1; k <= hi[2] + 1; ++k)
-      for (std::int64_t j = lo[1] - 1; j <= hi[1] + 1; ++j)
-        for (std::int64_t i = lo[0] - 1; i <= hi[0] + 1; ++i)
-          if (const auto it = cells_.find(key(i, j, k)); it != cells_.end())
-            for (const std::uint32_t b : it->second) visit(b);
+    const double r = reach + largest_;
+    centers_.in_cells({p - Vec3{r, r, r}, p + Vec3{r, r, r}}, visit);
   }
   /// The point itself, or, when it lies in balls, the nearest way out that a few steps find: in a crease to a
   /// thousandth of the radius.
   Vec3 outside(Vec3 p) const;
 
  private:
-  std::array<std::int64_t, 3> cell_of(const Vec3& p) const;
-  static std::int64_t key(std::int64_t i, std::int64_t j, std::int64_t k);
-
   std::vector<Ball> balls_;
-  double side_ = 0;  ///< of a cell: the largest radius, so that balls reach one cell beyond their centre's
-  std::unordered_map<std::int64_t, std::vector<std::uint32_t>> cells_;
+  double largest_;  ///< radius
+  PointHash centers_;
 };
 
 }  // namespace evenmesh

@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/segment.h"
+
 namespace evenmesh {
 namespace {
 
 constexpr double first_radius = 0.5, last_radius = 1, growth = 0.05;  ///< of the edge's length
 constexpr double balls_per_spacing = 0.5;
-
-double squared_distance(const Vec3& p, const BadEdge& edge) {
-  const Vec3 d = edge.to - edge.from;
-  const double length = squared_norm(d);
-  const double t = length > 0 ? std::clamp(dot(p - edge.from, d) / length, 0.0, 1.0) : 0.0;
-  return squared_norm(edge.from + t * d - p);
-}
 
 }  // namespace
 
@@ -28,8 +23,10 @@ std::vector<std::uint32_t> RegularizationBalls::next_round(std::span<const BadEd
     const double length = norm(edge.to - edge.from);
     bool meets_ball = false;
     index.near(0.5 * (edge.from + edge.to), 0.5 * length, [&](std::uint32_t b) {
-      if (squared_distance(active[b].center, edge) >= active[b].radius * active[b].radius) return;
-      meets_ball = true, met[b] = 1;
+      const double distance2 = closest_point_on_segment(active[b].center, edge.from, edge.to).squared_distance;
+      if (distance2 >= active[b].radius * active[b].radius) return;
+      meets_ball = true;
+      met[b] = 1;
     });
     if (meets_ball) continue;
     const double l = length > 0 ? length : edge_;

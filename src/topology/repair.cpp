@@ -3,32 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/point_hash.h"
+
 namespace evenmesh {
 namespace {
 
 constexpr std::uint32_t fewest_samples = 12;  ///< of a cell that may still be divided: three or four grid cells across
-
-/// A hash grid of points.
-class PointIndex {
- public:
-  PointIndex(std::span<const Vec3> points, double reach)
-      : points_(points.begin(), points.end()), index_(spheres(points, reach)) {}
-  template <typename Visit>
-  void near(const Vec3& p, double reach, const Visit& visit) const {
-    index_.near(p, reach, [&](std::uint32_t i) {
-      if (squared_norm(points_[i] - p) <= reach * reach) visit(i);
-    });
-  }
-
- private:
-  static std::vector<Ball> spheres(std::span<const Vec3> points, double reach) {
-    std::vector<Ball> balls;
-    for (const Vec3& p : points) balls.push_back({p, reach});
-    return balls;
-  }
-  std::vector<Vec3> points_;
-  BallIndex index_;
-};
 
 /// The cells that have a defect.
 struct Cell {
@@ -45,7 +25,6 @@ class Planner {
       : samples_(samples),
         labels_(labels),
         seeds_(seeds),
-        ambiguous_points_(ambiguous_faces),
         ambiguous_faces_(ambiguous_faces, options.edge),
         balls_(balls),
         options_(options),
@@ -91,7 +70,10 @@ class Planner {
     for_samples(defective, [&](std::uint32_t, std::uint32_t l, const Vec3& p) {
       Cell& cell = cells_[l];
       const double distance = squared_norm(p - seeds_[l]);
-      if (distance > cell.farthest) cell.farthest = distance, cell.far_sample = p;
+      if (distance > cell.farthest) {
+        cell.farthest = distance;
+        cell.far_sample = p;
+      }
     });
   }
 
@@ -106,7 +88,10 @@ class Planner {
     bool ambiguous = false;
     ambiguous_faces_.near(middle, reach, [&](std::uint32_t i) {
       ambiguous = true;
-      if (!planned_[i]) planned_[i] = 1, put_ball(ambiguous_points_[i]);
+      if (!planned_[i]) {
+        planned_[i] = 1;
+        put_ball(ambiguous_faces_[i]);
+      }
     });
     if (ambiguous) return;
     if (std::min(cells_[a].samples, cells_[b].samples) < fewest_samples) return put_ball(middle);
@@ -117,8 +102,7 @@ class Planner {
   /// Far from all pinches, those under balls included, the grid does resolve the shape, however fine its features are.
   bool unresolved_near(const Vec3& p) const {
     const double reach = 3 * options_.edge;
-    bool found = false;
-    ambiguous_faces_.near(p, reach, [&](std::uint32_t) { found = true; });
+    bool found = ambiguous_faces_.near(p, reach, [](std::uint32_t) { return true; });
     balls_.near(p, reach, [&](std::uint32_t b) { found |= norm(p - balls_.balls()[b].center) < reach; });
     return found;
   }
@@ -133,7 +117,8 @@ class Planner {
       if (!grown_[b] && ball.radius + 0.5 * step > most) return;
       met = true;
       if (grown_[b]) return;
-      grown_[b] = 1, ball.radius += step;
+      grown_[b] = 1;
+      ball.radius += step;
       repair_.changed.push_back(b);
     });
     new_balls_.near(p, 0,
@@ -147,8 +132,7 @@ class Planner {
   const SampleSet& samples_;
   std::span<const std::uint32_t> labels_;
   std::span<const Vec3> seeds_;
-  std::span<const Vec3> ambiguous_points_;
-  PointIndex ambiguous_faces_;
+  PointHash ambiguous_faces_;
   const BallIndex& balls_;
   const TopologyRepairOptions& options_;
   BallIndex new_balls_;
@@ -188,7 +172,7 @@ void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<co
   std::vector<Vec3> around;
   for (const std::size_t s : near_balls) around.push_back(balls.outside(seeds[s]));
   const double least = 0.6 * edge;
-  const PointIndex index(around, least);
+  const PointHash index(around, least);
   std::vector<char> gone(around.size(), 0);
   for (std::uint32_t s = 0; s < around.size(); ++s) {
     if (gone[s]) continue;
@@ -216,12 +200,13 @@ void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std
   std::sort(order.begin(), order.end(),
             [&](auto a, auto b) { return share[a] != share[b] ? share[a] < share[b] : a < b; });
 
-  const PointIndex index(seeds, apart);
+  const PointHash index(seeds, apart);
   std::vector<char> gone(seeds.size(), 0), beside(seeds.size(), 0);
   for (const std::uint32_t s : order) {
     if (count == 0) break;
     if (beside[s]) continue;
-    gone[s] = 1, --count;
+    gone[s] = 1;
+    --count;
     index.near(seeds[s], apart, [&](std::uint32_t t) { beside[t] = 1; });
   }
   std::size_t kept = 0;

@@ -24,7 +24,8 @@ void orient(const RenderOptions& options, Camera& camera) {
 
 Camera fit_camera(const Mesh& mesh, const RenderOptions& options) {
   Camera camera;
-  camera.width = options.width, camera.height = options.height;
+  camera.width = options.width;
+  camera.height = options.height;
   orient(options, camera);
   const Vec3 middle = mesh.bounds().center();
   Box seen;

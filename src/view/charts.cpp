@@ -42,8 +42,12 @@ struct EnergyAxis {
   explicit EnergyAxis(const std::vector<double>& ratios) {
     double least = 1, most = 2e-3;  // of the excess
     for (const double r : ratios)
-      if (std::isfinite(r)) least = std::min(least, std::max(r - 1, 1e-4)), most = std::max(most, r - 1);
-    lo = std::pow(10, std::floor(std::log10(least))), hi = std::pow(10, std::ceil(std::log10(most)));
+      if (std::isfinite(r)) {
+        least = std::min(least, std::max(r - 1, 1e-4));
+        most = std::max(most, r - 1);
+      }
+    lo = std::pow(10, std::floor(std::log10(least)));
+    hi = std::pow(10, std::ceil(std::log10(most)));
     if (least > 3 * lo) lo *= 3;
     if (most < hi / 3.4) hi /= 3;
   }
@@ -98,7 +102,10 @@ std::string escape_html(std::string_view text) {
 std::string histogram_svg(const Histogram& histogram, const std::string& label, const std::string& unit, int ticks,
                           double ideal) {
   std::size_t total = 0, most = 1;
-  for (const std::size_t c : histogram.counts) total += c, most = std::max(most, c);
+  for (const std::size_t c : histogram.counts) {
+    total += c;
+    most = std::max(most, c);
+  }
   std::string svg = svg_begin(label);
   const double bar = plot_width / static_cast<double>(histogram.counts.size());
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {

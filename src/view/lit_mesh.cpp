@@ -48,10 +48,15 @@ float openness_at(const Vec3& local, const Vec3& normal, const std::vector<Vec3>
     if (cosine <= 0.05) continue;
     RTCRay ray{};
     const Vec3 from = local + static_cast<double>(start) * normal;
-    ray.org_x = static_cast<float>(from.x), ray.org_y = static_cast<float>(from.y),
+    ray.org_x = static_cast<float>(from.x);
+    ray.org_y = static_cast<float>(from.y);
     ray.org_z = static_cast<float>(from.z);
-    ray.dir_x = static_cast<float>(d.x), ray.dir_y = static_cast<float>(d.y), ray.dir_z = static_cast<float>(d.z);
-    ray.tnear = start, ray.tfar = static_cast<float>(reach), ray.mask = ~0u;
+    ray.dir_x = static_cast<float>(d.x);
+    ray.dir_y = static_cast<float>(d.y);
+    ray.dir_z = static_cast<float>(d.z);
+    ray.tnear = start;
+    ray.tfar = static_cast<float>(reach);
+    ray.mask = ~0u;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene, &context, &ray);

@@ -86,10 +86,14 @@ void trace(const Stage& stage, Sample* samples, std::size_t count) {
     const Vec3 seen = stage.lit.scene.to_local(stage.camera.unproject(sample.x, sample.y));
     const Vec3 from = seen + (2.5 - dot(seen, towards)) * towards;
     RTCRay8& ray = hits.ray;
-    ray.org_x[i] = static_cast<float>(from.x), ray.dir_x[i] = static_cast<float>(-towards.x);
-    ray.org_y[i] = static_cast<float>(from.y), ray.dir_y[i] = static_cast<float>(-towards.y);
-    ray.org_z[i] = static_cast<float>(from.z), ray.dir_z[i] = static_cast<float>(-towards.z);
-    ray.tfar[i] = 10, ray.mask[i] = ~0u;
+    ray.org_x[i] = static_cast<float>(from.x);
+    ray.dir_x[i] = static_cast<float>(-towards.x);
+    ray.org_y[i] = static_cast<float>(from.y);
+    ray.dir_y[i] = static_cast<float>(-towards.y);
+    ray.org_z[i] = static_cast<float>(from.z);
+    ray.dir_z[i] = static_cast<float>(-towards.z);
+    ray.tfar[i] = 10;
+    ray.mask[i] = ~0u;
     hits.hit.geomID[i] = hits.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
   }
   RTCIntersectContext context;
@@ -186,7 +190,10 @@ Colour colour_at(const Stage& stage, const Face& face, double x, double y) {
     weight[k] = std::max(0.0, area_of(p, face.corners[(k + 1) % 3], face.corners[(k + 2) % 3]) / face.area);
     sum += weight[k];
   }
-  if (!(sum > 0) || !std::isfinite(sum)) weight = {1, 1, 1}, sum = 3;
+  if (!(sum > 0) || !std::isfinite(sum)) {
+    weight = {1, 1, 1};
+    sum = 3;
+  }
   Vec3 normal;
   double openness = 0, to_edge = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {

@@ -73,13 +73,13 @@ std::string card(const char* title, const std::string& body, const char* hint = 
   return fmt::format("<section class=\"card\"><h2>{}</h2>{}{}</section>", title, body, below);
 }
 
-std::string notices_html(const Report& report) {
+std::string findings_html(const Report& report) {
   std::string html;
   for (const bool broken : {true, false})
-    for (const Notice& notice : report.notices)
-      if (notice.promise_broken == broken)
+    for (const Finding& finding : report.findings)
+      if ((finding.severity == Severity::broken_promise) == broken)
         html += fmt::format("<p class=\"note{}\">{}{}</p>", broken ? " broken" : "",
-                            broken ? "<b>A promise could not be kept.</b> " : "", escape_html(notice.text));
+                            broken ? "<b>A promise could not be kept.</b> " : "", escape_html(finding.sentence));
   const MeshQuality& q = report.quality;
   if (q.closed() && q.two_manifold() && q.oriented() && report.self_intersections == 0 && q.degenerate_faces == 0)
     html += "<p class=\"note kept\">Closed, two-manifold, consistently oriented, without self-intersections.</p>";
@@ -213,7 +213,7 @@ std::string report_html(const MeshResult& result, const std::string& title, Exec
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>";
   html += name + " – evenmesh</title>\n" + style + "</head><body><main>\n";
   html += "<h1>" + name + "</h1><p class=\"lead\">Mesh report by evenmesh</p>\n";
-  html += notices_html(result.report) + tiles_html(result.report) + "\n";
+  html += findings_html(result.report) + tiles_html(result.report) + "\n";
   if (!result.mesh.triangles.empty())
     html += pictures_html(result.mesh, context) + "\n" + shell_html(result.mesh, kept) + charts_html(result) + "\n";
   html += tables_html(result.report) + "\n</main></body></html>\n";

@@ -20,7 +20,8 @@ class Cut {
     while (axis_ < 2 && std::any_of(volume.voxels.begin(), volume.voxels.end(),
                                     [&](const auto& v) { return v[axis_] != volume.voxels[0][axis_]; }))
       ++axis_;
-    right_ = axis_ == 0 ? 1 : 0, up_ = axis_ == 2 ? 1 : 2;
+    right_ = axis_ == 0 ? 1 : 0;
+    up_ = axis_ == 2 ? 1 : 2;
     lo_ = {1e9, 1e9};
     Point hi{-1e9, -1e9};
     for (const auto& v : volume.voxels) {
@@ -29,7 +30,8 @@ class Cut {
     }
     if (window > 0) {
       const auto& middle = volume.voxels[volume.voxels.size() / 2];
-      lo_ = {middle[right_] - window / 2, middle[up_] - window / 2}, hi = {lo_.u + window, lo_.v + window};
+      lo_ = {middle[right_] - window / 2, middle[up_] - window / 2};
+      hi = {lo_.u + window, lo_.v + window};
     }
     scale_ = width / (hi.u - lo_.u);
     image_.width = width;
@@ -79,7 +81,9 @@ class Cut {
   int row(double v) const { return image_.height - static_cast<int>(std::floor((v - lo_.v) * scale_)); }
   void set(int x, int y, std::uint32_t rgb) {
     std::uint8_t* pixel = &image_.rgb[3 * (std::size_t(y) * std::size_t(image_.width) + std::size_t(x))];
-    pixel[0] = rgb >> 16 & 255, pixel[1] = rgb >> 8 & 255, pixel[2] = rgb & 255;
+    pixel[0] = rgb >> 16 & 255;
+    pixel[1] = rgb >> 8 & 255;
+    pixel[2] = rgb & 255;
   }
   void draw_line(const Point& a, const Point& b) {
     const double length = std::hypot(b.u - a.u, b.v - a.v) * scale_;

@@ -70,7 +70,7 @@ Vec3 normal_of(const Mesh& mesh, std::uint32_t triangle) {
 }
 
 TriDexel scanned(const Shape& shape, const Grid& grid, std::vector<PackedNormal>& normals) {
-  const auto* sampler = dynamic_cast<const gl::RasterSampler*>(shape.sampler());
+  const auto* sampler = dynamic_cast<const gl::RasterSampler*>(shape.ray_source());
   EXPECT_NE(sampler, nullptr);
   return sampler->scan(grid, shape.bounds, normals, ExecutionContext::silent());
 }
@@ -295,9 +295,9 @@ TEST(Raster, SheetsAreSurfacesAndNoSolids) {
       {.vertex = sheet_vertex, .vertex_count = 2400, .bounds = {{-1.5, -1.5, -0.5}, {1.5, 1.5, 0.5}}});
   const Shape ball = shape_from_raster({.geometry = make_icosphere(4)});
   evenmesh::ExecutionContext& context = evenmesh::ExecutionContext::silent();
-  EXPECT_LT(sheet.sampler()->solidity(sheet.bounds, context), 0.1);
-  EXPECT_GT(ball.sampler()->solidity(ball.bounds, context), 0.99);
-  const SampleSet samples = sheet.sampler()->sample_surface(make_grid(sheet.bounds, 100), sheet.bounds, context);
+  EXPECT_LT(sheet.ray_source()->solidity(sheet.bounds, context), 0.1);
+  EXPECT_GT(ball.ray_source()->solidity(ball.bounds, context), 0.99);
+  const SampleSet samples = sheet.ray_source()->sample_surface(make_grid(sheet.bounds, 100), sheet.bounds, context);
   const Fit worst = fit(
       samples, [](const Vec3& p) { return p.z - 0.2 * std::sin(3 * p.x); },
       [](const Vec3& p) {
@@ -309,7 +309,7 @@ TEST(Raster, SheetsAreSurfacesAndNoSolids) {
   EXPECT_NEAR(samples.total_area, 2 * length, 0.05);
   // Beyond the bounds nothing is put onto them.
   const Box part{{-1.5, -1.5, -0.5}, {0, 1.5, 0.5}};
-  EXPECT_NEAR(sheet.sampler()->sample_surface(make_grid(sheet.bounds, 100), part, context).total_area, length, 0.05);
+  EXPECT_NEAR(sheet.ray_source()->sample_surface(make_grid(sheet.bounds, 100), part, context).total_area, length, 0.05);
 }
 
 TEST(Raster, TakesDefinitions) {

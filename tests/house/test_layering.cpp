@@ -33,22 +33,12 @@ const std::map<std::string, Names> beside{
 
 /// Public headers, and the room from which on they may be included.
 const std::map<std::string, std::string> public_headers{
-    {"error.h", "core"},
-    {"execution_context.h", "core"},
-    {"mesh.h", "geometry"},
-    {"shape.h", "shape"},
-    {"measure.h", "measure"},
-    {"io.h", "io"},
-    {"mesh_shape.h", "pipeline"},
-    {"render.h", "view"},
-    {"points.h", "geometry"},
-    {"volume.h", "geometry"},
-    {"solid.h", "shape"},
-    {"scene.h", "scene"},
-    {"repair.h", "geometry"},
-    {"dexels.h", "shape"},
-    {"glsl.h", "gl"},
-    {"raster.h", "gl"},
+    {"error.h", "core"},      {"findings.h", "geometry"},   {"execution_context.h", "core"},
+    {"mesh.h", "geometry"},   {"shape.h", "shape"},         {"measure.h", "measure"},
+    {"io.h", "io"},           {"mesh_shape.h", "pipeline"}, {"render.h", "view"},
+    {"points.h", "geometry"}, {"volume.h", "geometry"},     {"solid.h", "shape"},
+    {"scene.h", "scene"},     {"repair.h", "geometry"},     {"dexels.h", "shape"},
+    {"glsl.h", "gl"},         {"raster.h", "gl"},
 };
 
 Names visible_from(const std::string& room) {
@@ -147,6 +137,43 @@ TEST(Layering, TheProgramAndTheExamplesSeeOnlyPublicHeaders) {
       }
     }
   }
+}
+
+/// Classes by name, and the modules that define one of that name.
+std::map<std::string, Names> classes_by_module() {
+  static const std::regex pattern(R"(^(?:class|struct) (\w+)(?: final)?(?: :[^;]*)? \{.*)");
+  std::map<std::string, Names> classes;
+  std::smatch match;
+  const auto add = [&](const fs::path& file, const std::string& module) {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);)
+      if (std::regex_match(line, match, pattern)) classes[match[1]].insert(module);
+  };
+  for (const fs::path& file : sources_under(root / "src"))
+    add(file, fs::relative(file, root / "src").begin()->string());
+  for (const fs::path& file : sources_under(root / "include")) add(file, public_headers.at(file.filename()));
+  return classes;
+}
+
+TEST(Layering, NoModuleDeclaresWhatAHigherOneDefines) {
+  static const std::regex pattern(R"(^\s*(?:class|struct) (\w+);.*)");
+  const std::map<std::string, Names> classes = classes_by_module();
+  std::smatch match;
+  const auto check = [&](const fs::path& file, const Names& visible) {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) {
+      if (!std::regex_match(line, match, pattern)) continue;
+      const auto found = classes.find(match[1]);
+      if (found == classes.end()) continue;  // defined within a class, or by another library
+      const bool seen = std::any_of(found->second.begin(), found->second.end(),
+                                    [&](const std::string& module) { return visible.contains(module); });
+      EXPECT_TRUE(seen) << file << " declares " << match[1];
+    }
+  };
+  for (const fs::path& file : sources_under(root / "src"))
+    check(file, visible_from(fs::relative(file, root / "src").begin()->string()));
+  for (const fs::path& file : sources_under(root / "include"))
+    check(file, visible_from(public_headers.at(file.filename())));
 }
 
 TEST(Layering, EveryHeaderIsGuardedAndNoFileIsTooLong) {

@@ -58,9 +58,8 @@ TEST(Fragments, WhatDoesNotFitTogetherIsSaid) {
   const MeshOptions options{.vertices = 120, .resolution = 30, .quality = Quality::fast, .connect = Connect::fragments};
   const MeshResult result = meshed(gallery_shape("menger-2"), options);
   const MeshQuality q = measure_quality(result.mesh);
-  bool told = false;
-  for (const Notice& notice : result.report.notices) told |= notice.promise_broken;
-  EXPECT_EQ(q.closed() && q.two_manifold() && q.oriented() && result.report.self_intersections == 0, !told);
+  EXPECT_EQ(q.closed() && q.two_manifold() && q.oriented() && result.report.self_intersections == 0,
+            !breaks_a_promise(result.report));
 }
 
 TEST(Fragments, SheetsHaveNoInsideToSimplify) {
@@ -69,7 +68,7 @@ TEST(Fragments, SheetsHaveNoInsideToSimplify) {
   options.topology = TopologyRule::simplify;
   const MeshResult result = meshed(shape_from_mesh(hemisphere(4)), options);
   expect_good_sheet(result);
-  EXPECT_TRUE(has_notice(result.report, "sheets have no inside"));
+  EXPECT_TRUE(has_finding(result.report, FindingCode::sheet_topology_kept));
 }
 
 class Simplify : public testing::TestWithParam<Connect> {};
@@ -85,7 +84,7 @@ TEST_P(Simplify, KeepsTheNumberOfVertices) {
   EXPECT_LE(one.mesh.vertices.size(), 402u);
   EXPECT_EQ(one.report.inserted_seeds, 0u);
   EXPECT_GT(one.report.regularization_rounds, 0u);
-  EXPECT_TRUE(has_notice(one.report, "the topology was made simpler"));
+  EXPECT_TRUE(has_finding(one.report, FindingCode::topology_simplified));
 }
 
 TEST_P(Simplify, LeavesAloneWhatFitsTogether) {

@@ -53,7 +53,7 @@ TEST(TopologyRepair, TopologyThatNeedsMoreVerticesGetsThem) {
   EXPECT_EQ(result.report.quality.euler, -160);
   EXPECT_GT(result.mesh.vertices.size(), 300u);
   EXPECT_GT(result.report.inserted_seeds, 0u);
-  EXPECT_TRUE(has_notice(result.report, "the topology needs more"));
+  EXPECT_TRUE(has_finding(result.report, FindingCode::vertex_count));
 }
 
 TEST(TopologyRepair, SurfacesThatTouchAreRegularized) {
@@ -61,7 +61,7 @@ TEST(TopologyRepair, SurfacesThatTouchAreRegularized) {
   const MeshResult result = meshed(gallery_shape("klein"), {.vertices = 1000});
   expect_good_mesh(result);
   EXPECT_GT(result.report.regularization_rounds, 0u);
-  EXPECT_TRUE(has_notice(result.report, "closer to itself than the grid"));
+  EXPECT_TRUE(has_finding(result.report, FindingCode::balls_united));
 }
 
 }  // namespace

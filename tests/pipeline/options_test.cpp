@@ -106,7 +106,7 @@ TEST(MeshOptions, WithoutFinenessOneIsEstimatedAndSaid) {
     expect_good_mesh(result);
     EXPECT_GE(result.mesh.vertices.size(), 200u) << name;
     EXPECT_LE(result.mesh.vertices.size(), 20'000u) << name;
-    EXPECT_TRUE(has_notice(result.report, "no -n or -l given"));
+    EXPECT_TRUE(has_finding(result.report, FindingCode::fineness_estimated));
   }
 }
 
@@ -116,7 +116,7 @@ TEST(MeshOptions, TooFewSamplesLowerTheCount) {
   EXPECT_LT(result.mesh.vertices.size(), 1000u);
   EXPECT_GE(result.report.alpha, 49.0);
   EXPECT_EQ(result.report.resolution, 40u);
-  EXPECT_TRUE(has_notice(result.report, "fewer than 50 samples"));
+  EXPECT_TRUE(has_finding(result.report, FindingCode::vertices_limited));
 }
 
 TEST(MeshOptions, DefaultResolutionGivesAHundredSamplesPerSeed) {
@@ -149,7 +149,7 @@ TEST(Runs, CancelBeforeAndDuringTheRun) {
   evenmesh::ExecutionContext before(1);
   before.cancel();
   EXPECT_THROW(mesh_shape(ball, {.vertices = 200}, before), Cancelled);
-  for (const char* stage : {"sample", "balance", "connect", "place", "refine", "measure"}) {
+  for (const char* stage : {"sample", "relax", "connect", "place", "refine", "measure"}) {
     evenmesh::ExecutionContext during(2);
     during.on_progress([&](std::string_view running, double) {
       if (running == stage) during.cancel();
@@ -202,23 +202,28 @@ TEST(Reports, AreJsonWithTheKeysOfTheCommandLine) {
                           "seconds",
                           "peak_memory_bytes",
                           "self_intersections",
-                          "notices"})
+                          "findings"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["vertices"], result.mesh.vertices.size());
   EXPECT_EQ(json["faces"], result.mesh.triangles.size());
   EXPECT_EQ(json["euler"], 0);
   EXPECT_EQ(json["closed"], true);
   EXPECT_EQ(json["evaluations"], json["energies"].size());
-  for (const char* stage : {"sample", "balance", "connect", "place", "refine", "measure"})
+  for (const char* stage : {"sample", "relax", "connect", "place", "refine", "measure"})
     EXPECT_TRUE(json["seconds"].contains(stage)) << stage;
 }
 
 TEST(Reports, OfNothingAreJsonToo) {
   Report report;
-  report.notices.push_back({true, "a \"quoted\" sentence\n"});
+  report.findings.push_back(
+      {FindingCode::no_area, Severity::broken_promise, Vec3{1, 2, 3}, {{"count", 4.0}}, "a \"quoted\" sentence\n"});
   const auto json = nlohmann::json::parse(report_json(report));
-  EXPECT_EQ(json["notices"][0]["text"], "a \"quoted\" sentence\n");
-  EXPECT_EQ(json["notices"][0]["promise_broken"], true);
+  const auto& finding = json["findings"][0];
+  EXPECT_EQ(finding["code"], "no-area");
+  EXPECT_EQ(finding["severity"], "broken promise");
+  EXPECT_EQ(finding["place"], nlohmann::json::parse("[1, 2, 3]"));
+  EXPECT_EQ(finding["values"]["count"], 4);
+  EXPECT_EQ(finding["sentence"], "a \"quoted\" sentence\n");
 }
 
 TEST(Density, VerticesGatherWhereTheyAreWanted) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -16,6 +17,15 @@ namespace evenmesh {
 inline MeshResult meshed(const Shape& shape, const MeshOptions& options, unsigned threads = 2) {
   ExecutionContext context(threads);
   return mesh_shape(shape, options, context);
+}
+
+inline bool has_finding(const Report& report, FindingCode code) {
+  return std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& f) { return f.code == code; });
+}
+
+inline bool breaks_a_promise(const Report& report) {
+  return std::any_of(report.findings.begin(), report.findings.end(),
+                     [](const Finding& f) { return f.severity == Severity::broken_promise; });
 }
 
 /// Closed, two-manifold, oriented outward, not through itself, and the report tells the same.
@@ -40,31 +50,23 @@ inline void expect_good_mesh(const MeshResult& result) {
               1e-9 * report.alpha);
   EXPECT_GT(report.peak_memory_bytes, 0u);
   EXPECT_FALSE(report.seconds.empty());
-  for (const Notice& notice : report.notices) {
-    EXPECT_FALSE(notice.promise_broken) << notice.text;
-    EXPECT_FALSE(notice.text.empty());
+  for (const Finding& finding : report.findings) {
+    EXPECT_NE(finding.severity, Severity::broken_promise) << finding.sentence;
+    EXPECT_FALSE(finding.sentence.empty());
   }
 }
 
-/// The count asked for within 0.5 %, or a notice that says otherwise.
+/// The count asked for within 0.5 %, or a finding that says otherwise.
 inline void expect_count(const MeshResult& result, std::size_t asked) {
   EXPECT_EQ(result.report.seeds_asked, asked);
   const double made = static_cast<double>(result.mesh.vertices.size()), wanted = static_cast<double>(asked);
   if (std::abs(made - wanted) <= 0.005 * wanted) return;
-  bool told = false;
-  for (const Notice& notice : result.report.notices) told = told || notice.text.find("instead of") != std::string::npos;
-  EXPECT_TRUE(told) << made << " instead of " << wanted;
+  EXPECT_TRUE(has_finding(result.report, FindingCode::vertex_count)) << made << " instead of " << wanted;
 }
 
 inline bool same_mesh(const Mesh& a, const Mesh& b) {
   return a.triangles == b.triangles && a.vertices.size() == b.vertices.size() &&
          std::memcmp(a.vertices.data(), b.vertices.data(), a.vertices.size() * sizeof(Vec3)) == 0;
-}
-
-inline bool has_notice(const Report& report, const std::string& words) {
-  for (const Notice& notice : report.notices)
-    if (notice.text.find(words) != std::string::npos) return true;
-  return false;
 }
 
 }  // namespace evenmesh

@@ -16,7 +16,7 @@ TEST(PointMeshes, OfABallAreClosed) {
       EXPECT_GT(result.report.quality.volume, 0) << "outward";
       EXPECT_NEAR(result.report.quality.area, 4 * pi, 0.03 * 4 * pi);
       EXPECT_GT(result.report.quality.q_avg, 0.9);
-      EXPECT_TRUE(has_notice(result.report, "are bridged"));
+      EXPECT_TRUE(has_finding(result.report, FindingCode::point_gaps_bridged));
     }
 }
 

@@ -113,7 +113,7 @@ TEST(MeshShape, OpenMeshesAreClosedAndSaid) {
   const MeshResult result = meshed(shape_from_mesh(hemisphere), {.vertices = 500, .method = Method::raster});
   expect_good_mesh(result);
   EXPECT_GT(result.report.disagreements, 0u);
-  EXPECT_TRUE(has_notice(result.report, "not closed"));
+  EXPECT_TRUE(has_finding(result.report, FindingCode::inside_by_vote));
   EXPECT_NEAR(result.report.quality.volume, 2 * pi / 3, 0.12 * 2 * pi / 3);
 }
 
@@ -141,7 +141,7 @@ TEST(MeshShape, BoundsCutAndCap) {
     EXPECT_EQ(result.report.quality.euler, 2);
     EXPECT_NEAR(result.report.quality.volume, 2 * pi / 3, 0.04 * 2 * pi / 3);
     EXPECT_LE(result.report.quality.bounds.hi.x, 0.02);
-    EXPECT_TRUE(has_notice(result.report, "closed there"));
+    EXPECT_TRUE(has_finding(result.report, FindingCode::closed_by_bounds));
   }
 }
 
@@ -159,7 +159,7 @@ TEST(MeshShape, SpecksSmallerThanACellAreLeftOutAndSaid) {
   expect_good_mesh(result);
   EXPECT_EQ(result.report.quality.components, 1u);
   EXPECT_EQ(result.report.dropped_components, 2u);
-  EXPECT_TRUE(has_notice(result.report, "left out"));
+  EXPECT_TRUE(has_finding(result.report, FindingCode::small_components_dropped));
 }
 
 TEST(MeshShape, NoSurfaceIsSaid) {

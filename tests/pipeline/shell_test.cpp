@@ -133,9 +133,11 @@ TEST(ShellMethod, SaysWhichThicknessKeepsSheetsApart) {
   EXPECT_EQ(merged.quality.euler, 0) << "the narrow one is filled";
   EXPECT_EQ(merged.merges, 1u);
   EXPECT_EQ(merged.thickness_apart, 1u);
-  EXPECT_TRUE(std::any_of(merged.notices.begin(), merged.notices.end(), [](const Notice& n) {
-    return n.text.find("--thickness 1 keeps them apart") != std::string::npos;
-  }));
+  const auto said = std::find_if(merged.findings.begin(), merged.findings.end(),
+                                 [](const Finding& f) { return f.code == FindingCode::sheets_merged; });
+  ASSERT_NE(said, merged.findings.end());
+  EXPECT_TRUE(said->place.has_value());
+  EXPECT_NE(said->sentence.find("--thickness 1 keeps them apart"), std::string::npos);
 }
 
 TEST(ShellMethod, GivesTheShellWhenAsked) {

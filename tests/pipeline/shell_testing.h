@@ -39,7 +39,7 @@ inline void expect_good_sheet(const MeshResult& result) {
   EXPECT_GT(result.report.sites, 0u);
   EXPECT_GT(result.report.shell_voxels, result.report.sites);
   EXPECT_GT(result.report.sheets, 0u);
-  for (const Notice& notice : result.report.notices) EXPECT_FALSE(notice.promise_broken) << notice.text;
+  EXPECT_FALSE(breaks_a_promise(result.report));
 }
 
 /// Directed edges of one triangle, by where they start; of a two-manifold.

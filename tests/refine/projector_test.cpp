@@ -1,4 +1,4 @@
-#include "refine/projector.h"
+#include "sample/projector.h"
 
 #include "evenmesh/error.h"
 #include "geometry/closest_point.h"

@@ -15,8 +15,10 @@ MeshResult example() {
   report.quality = measure_quality(result.mesh);
   report.energies = {1.3, 1.1, 1.05, 1.02, 1.2, 1.01};
   report.energy_ratio = 1.01;
-  report.seconds = {{"sample", 0.2}, {"balance <fast>", 0.7}};
-  report.notices = {{false, "12 more vertices were needed."}, {true, "2 pairs & more <intersect>."}};
+  report.seconds = {{"sample", 0.2}, {"relax <fast>", 0.7}};
+  report.findings = {
+      {FindingCode::vertex_count, Severity::note, {}, {}, "12 more vertices were needed."},
+      {FindingCode::self_intersections, Severity::broken_promise, {}, {}, "2 pairs & more <intersect>."}};
   return result;
 }
 
@@ -79,7 +81,7 @@ TEST(Report, EscapesAllText) {
   EXPECT_EQ(html.find("<b> &"), std::string::npos);
   EXPECT_NE(html.find("a &lt;b&gt; &amp; &quot;c&quot;"), std::string::npos);
   EXPECT_NE(html.find("2 pairs &amp; more &lt;intersect&gt;."), std::string::npos);
-  EXPECT_NE(html.find("balance &lt;fast&gt;"), std::string::npos);
+  EXPECT_NE(html.find("relax &lt;fast&gt;"), std::string::npos);
 }
 
 TEST(Report, PutsBrokenPromisesFirst) {

@@ -13,9 +13,9 @@ struct Grid;
 struct SampleSet;
 
 /// A solid known by where rays enter and leave it, or a surface that they meet. Callable from one thread at a time.
-class Sampler {
+class RaySource {
  public:
-  virtual ~Sampler() = default;
+  virtual ~RaySource() = default;
 
   /// The crossings with the edges of a grid, as those of any other solid: entering and leaving in turn on every ray,
   /// the three directions with one and the same inside, nothing inside in the grid's outermost layer.
@@ -31,7 +31,7 @@ class Sampler {
   virtual double solidity(const Box& bounds, ExecutionContext& context) const = 0;
 
   /// The same moved. @param transform  not singular
-  virtual std::shared_ptr<const Sampler> moved(const Affine& transform) const = 0;
+  virtual std::shared_ptr<const RaySource> moved(const Affine& transform) const = 0;
 };
 
 }  // namespace evenmesh

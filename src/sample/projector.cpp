@@ -1,4 +1,4 @@
-#include "refine/projector.h"
+#include "sample/projector.h"
 
 #include <algorithm>
 #include <array>

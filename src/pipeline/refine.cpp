@@ -1,0 +1,113 @@
+#include "pipeline/refine.h"
+
+#include <array>
+
+#include "refine/fit.h"
+#include "refine/flips.h"
+#include "refine/polish.h"
+#include "refine/untangle.h"
+#include "refine/vertex_rings.h"
+#include "topology/ball_projector.h"
+
+namespace evenmesh {
+namespace {
+
+class Refinement {
+ public:
+  Refinement(Draft draft, const Tessellation& cells, const Sampler& sampler, const MeshOptions& options,
+             ExecutionContext& context)
+      : draft_(std::move(draft)), cells_(cells), sampler_(sampler), options_(options), context_(context) {}
+
+  void project() {
+    if (options_.placement != Placement::centroid && cells_.sampling.plan.route != Route::wrap) {
+      projector_ = sampler_.projector(cells_.sampling.surface(), context_);
+      if (!cells_.balls.balls().empty()) projector_ = make_ball_projector(std::move(projector_), cells_.balls);
+    }
+    std::vector<Vec3>& vertices = draft_.mesh.vertices;
+    if (projector_)
+      parallel_for(context_, vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v)
+          if (!draft_.constraints.vertex(static_cast<std::uint32_t>(v)))
+            vertices[v] = projector_->project(vertices[v], 0.5 * draft_.sizing.edge(vertices[v]));
+      });
+    for (const auto& [v, place] : draft_.boundary) vertices[v] = place;
+  }
+
+  Refined improve() {
+    Mesh& mesh = draft_.mesh;
+    VertexConstraints& constraints = draft_.constraints;
+    if (!measure_quality(mesh, context_).two_manifold()) {
+      const std::size_t pairs = intersections(mesh).size();
+      return {std::move(mesh), pairs};
+    }
+    flip_to_delaunay(mesh, constraints);
+    polish(mesh, projector_.get(), context_, constraints);
+    flip_to_delaunay(mesh, constraints);
+    release_features();
+    if (options_.placement == Placement::quadric) fit();
+    finish_projection();
+    if (!constraints.curve.empty())
+      for (const auto& [s, t] : intersections(mesh)) constraints.release(mesh, std::array{s, t});
+    const auto find = [&](const Mesh& m) { return intersections(m); };
+    const std::size_t left = untangle(mesh, projector_.get(), find, context_, constraints);
+    return {std::move(mesh), left};
+  }
+
+ private:
+  /// Files hold single precision: what matters is that the mesh written does not intersect itself.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections(Mesh mesh) const {
+    for (Vec3& v : mesh.vertices)
+      for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(v[a]);
+    return self_intersections(mesh, context_);
+  }
+
+  /// Where curves are so near to each other, or meet at so acute an angle, that triangles between them are slivers,
+  /// regular triangles come first.
+  void release_features() {
+    constexpr double sliver = 0.35;  // angles of 12°
+    if (draft_.constraints.curve.empty()) return;
+    const auto slivers = triangles_below(draft_.mesh, sliver);
+    if (slivers.empty()) return;
+    draft_.constraints.release(draft_.mesh, slivers);
+    polish(draft_.mesh, projector_.get(), context_, draft_.constraints);
+    flip_to_delaunay(draft_.mesh, draft_.constraints);
+  }
+
+  void fit() {
+    constexpr double sheet_error = 3;  // voxels
+    const SampleSet& samples = cells_.sampling.surface();
+    std::vector<std::uint32_t> vertex_of_sample(cells_.labels.size());
+    for (std::size_t i = 0; i < vertex_of_sample.size(); ++i)
+      vertex_of_sample[i] = draft_.vertex_of_label[cells_.labels[i]];
+    const double error = cells_.sampling.closed() ? 0 : sheet_error * samples.grid.spacing;
+    fit_extremes(draft_.mesh, samples, vertex_of_sample, projector_.get(), error, context_, draft_.constraints);
+  }
+
+  /// What was projected onto the samples only goes the rest of the way.
+  void finish_projection() {
+    if (!projector_) return;
+    Mesh& mesh = draft_.mesh;
+    std::vector<Vec3> places = mesh.vertices;
+    sampler_.step_onto(places, 0.25 * cells_.sampling.samples.grid.spacing);
+    for (std::uint32_t v = 0; v < places.size(); ++v)
+      if (!draft_.constraints.vertex(v) && cells_.balls.outside(places[v]) == places[v]) mesh.vertices[v] = places[v];
+  }
+
+  Draft draft_;
+  const Tessellation& cells_;
+  const Sampler& sampler_;
+  const MeshOptions& options_;
+  ExecutionContext& context_;
+  std::unique_ptr<Projector> projector_;
+};
+
+}  // namespace
+
+Refined refine(Draft draft, const Tessellation& cells, const Sampler& sampler, const MeshOptions& options,
+               StageTimer& timer, ExecutionContext& context) {
+  Refinement refinement(std::move(draft), cells, sampler, options, context);
+  timer.stage("place", 0.05, [&] { refinement.project(); });
+  return timer.stage("refine", 0.05, [&] { return refinement.improve(); });
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,139 @@
+#include "pipeline/report.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace evenmesh {
+namespace {
+
+void add_sampling(const Sampling& sampling, Report& report) {
+  report.seeds_asked = sampling.plan.vertices;
+  report.samples = sampling.sampled;
+  report.resolution = sampling.plan.grid.resolution;
+  report.spacing = sampling.samples.grid.spacing;
+  report.filled_cavities = sampling.filled_cavities;
+  report.disagreements = sampling.disagreements;
+  report.unresolved = sampling.unresolved;
+  report.dropped_components = sampling.dropped_components;
+  report.sites = sampling.sites;
+  report.shell_voxels = sampling.band_voxels;
+  report.thickness = sampling.plan.grid.thickness;
+  report.merges = sampling.merges;
+  report.thickness_apart = sampling.thickness_apart;
+  if (!sampling.sheet) return;
+  report.sheets = sampling.sheet->sheets.sheets;
+  report.cuts = sampling.sheet->sheets.cut;
+}
+
+std::vector<double> cycle_shares(const std::vector<std::size_t>& edges, ExecutionContext& context) {
+  const auto all = static_cast<double>(std::accumulate(edges.begin(), edges.end(), std::size_t{0}));
+  std::vector<double> shares;
+  for (std::size_t c = 0; c < edges.size(); ++c) {
+    shares.push_back(all > 0 ? static_cast<double>(edges[c]) / all : 0);
+    context.log(fmt::format("edges from cycles of {}: {}, {:.2f} %", c + 3, edges[c], 100 * shares.back()));
+  }
+  return shares;
+}
+
+void add_tessellation(const Tessellation& cells, Report& report, ExecutionContext& context) {
+  report.energies = cells.energies;
+  report.evaluations = cells.energies.size();
+  report.energy_ratio = cells.energy_ratio;
+  report.crease_vertices = cells.fixed.places.size();
+  for (const FeatureCurve& curve : cells.features.curves)
+    for (std::size_t p = 1; p < curve.points.size(); ++p)
+      report.crease_length += norm(curve.points[p] - curve.points[p - 1]);
+  report.inserted_seeds = cells.inserted_seeds;
+  report.regularization_rounds = cells.regularization_rounds;
+  report.cycle_shares = cycle_shares(cells.complex.edges_by_cycle, context);
+}
+
+/// What the run has to say of its result, in the order of the stages.
+class Judge {
+ public:
+  Judge(const Draft& draft, const Tessellation& cells, const MeshOptions& options, const Report& report)
+      : draft_(draft), cells_(cells), options_(options), report_(report), quality_(report.quality) {}
+
+  std::vector<Finding> findings() {
+    findings_ = cells_.sampling.findings;
+    if (report_.dropped_components > 0)
+      say(FindingCode::small_components_dropped, {{"count", number(report_.dropped_components)}});
+    judge_topology();
+    judge_triangles();
+    const double asked = number(report_.seeds_asked), made = number(quality_.vertices);
+    if (std::abs(made - asked) > 0.005 * asked)
+      say(FindingCode::vertex_count,
+          {{"vertices", made}, {"asked", asked}, {"reason", made > asked ? "needs more" : "leaves room for fewer"}});
+    return std::move(findings_);
+  }
+
+ private:
+  static double number(std::size_t n) { return static_cast<double>(n); }
+  void say(FindingCode code, std::vector<std::pair<std::string, FindingValue>> values = {}) {
+    findings_.push_back(make_finding(code, std::move(values)));
+  }
+
+  void judge_topology() {
+    const bool closed = cells_.sampling.closed(), fragments = options_.connect == Connect::fragments;
+    const bool manifold = quality_.two_manifold() && quality_.oriented();
+    if (const std::size_t balls = cells_.balls.balls().size(); balls > 0)
+      say(options_.topology == TopologyRule::simplify ? FindingCode::topology_simplified : FindingCode::balls_united,
+          {{"count", number(balls)}});
+    if (!closed && fragments && !cells_.two_manifold) say(FindingCode::cells_torn);
+    const double bad_edges = number(quality_.non_manifold_edges);
+    if (!closed && !manifold) say(FindingCode::not_manifold, {{"edges", bad_edges}});
+    if (closed && !(quality_.closed() && manifold))
+      say(FindingCode::not_closed, {{"boundary", number(quality_.boundary_edges)}, {"edges", bad_edges}});
+    // Fragments do not look at the samples' surface, and of sheets one side is left out.
+    if (!closed || fragments || !(quality_.closed() && manifold)) return;
+    const auto spheres = 2 * static_cast<std::int64_t>(draft_.two_triangle_spheres);
+    if (const std::int64_t surface = cells_.complex.surface_euler - spheres; surface != quality_.euler)
+      say(FindingCode::euler_differs,
+          {{"mesh", static_cast<double>(quality_.euler)}, {"surface", static_cast<double>(surface)}});
+  }
+
+  void judge_triangles() {
+    if (report_.self_intersections > 0)
+      say(FindingCode::self_intersections, {{"count", number(report_.self_intersections)}});
+    if (quality_.degenerate_faces > 0) say(FindingCode::no_area, {{"count", number(quality_.degenerate_faces)}});
+  }
+
+  const Draft& draft_;
+  const Tessellation& cells_;
+  const MeshOptions& options_;
+  const Report& report_;
+  const MeshQuality& quality_;
+  std::vector<Finding> findings_;
+};
+
+std::size_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace
+
+MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cells, const MeshOptions& options,
+                   StageTimer& timer, ExecutionContext& context) {
+  MeshResult result{std::move(refined.mesh), {}};
+  Report& report = result.report;
+  add_sampling(cells.sampling, report);
+  add_tessellation(cells, report, context);
+  report.dropped_components += draft.two_triangle_spheres;
+  report.cuts += draft.cuts;
+  report.self_intersections = refined.self_intersections;
+  timer.stage("measure", 0.05, [&] { report.quality = measure_quality(result.mesh, context); });
+  report.seeds = report.quality.vertices;
+  report.alpha = static_cast<double>(report.samples) / static_cast<double>(std::max<std::size_t>(1, report.seeds));
+  report.findings = Judge(draft, cells, options, report).findings();
+  report.seconds = timer.seconds();
+  report.peak_memory_bytes = peak_memory_bytes();
+  context.report("done", 1);
+  return result;
+}
+
+}  // namespace evenmesh

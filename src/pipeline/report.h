@@ -1,0 +1,12 @@
+#pragma once
+/// What a run did, put together from the values that its stages returned.
+
+#include "pipeline/refine.h"
+
+namespace evenmesh {
+
+/// Measures the mesh, and says of it what is not as promised or asked for.
+MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cells, const MeshOptions& options,
+                   StageTimer& timer, ExecutionContext& context);
+
+}  // namespace evenmesh

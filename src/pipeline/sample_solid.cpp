@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <cmath>
+
+#include "evenmesh/error.h"
+#include "grid/density.h"
+#include "grid/surface_components.h"
+#include "pipeline/sampling.h"
+
+namespace evenmesh {
+namespace {
+
+constexpr int attempts = 4;            ///< to find the resolution of a surface without a size of its own
+constexpr double fractal_alpha = 150;  ///< samples per seed there
+constexpr std::size_t min_resolution = 24;
+constexpr double max_unresolved = 0.02;  ///< share of crossings: rays that graze a curved surface lose up to 1 %
+
+class SolidSampling {
+ public:
+  SolidSampling(const Sampler& sampler, Plan plan, const MeshOptions& options, StageTimer& timer,
+                ExecutionContext& context)
+      : sampler_(sampler), options_(options), timer_(timer), context_(context) {
+    result_.plan = std::move(plan);
+    result_.findings = std::move(result_.plan.findings);
+  }
+
+  Sampling result() {
+    sample();
+    const double h = result_.samples.grid.spacing;
+    const double surprise = static_cast<double>(result_.samples.size()) / (result_.plan.samples_per_h2 / (h * h));
+    if (result_.plan.refinable && (surprise > 2 || surprise < 0.6)) sample_again();
+    weigh();
+    if (result_.plan.small_components > 0 || surprise > 2) drop_small();
+    return std::move(result_);
+  }
+
+ private:
+  void sample() {
+    const Grid grid = make_grid(sampler_.bounds(), result_.plan.grid.resolution);
+    result_.samples = timer_.stage("sample", 0.1, [&] { return sampler_.sample(grid, context_); });
+    if (!options_.fill_cavities) return;
+    timer_.stage("sample", 0, [&] {
+      RemainingSurface rest = fill_cavities(std::move(result_.samples), context_);
+      result_.samples = std::move(rest.samples);
+      result_.filled_cavities = rest.dropped;
+    });
+  }
+
+  /// Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
+  void sample_again() {
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+      const double alpha = static_cast<double>(result_.samples.size()) / static_cast<double>(result_.plan.vertices);
+      if (alpha > 0.6 * fractal_alpha && alpha < 1.4 * fractal_alpha) return;
+      const double better = static_cast<double>(result_.plan.grid.resolution) * std::sqrt(fractal_alpha / alpha);
+      set_resolution(better);
+      sample();
+    }
+  }
+  void set_resolution(double cells) {
+    result_.plan.grid.resolution = std::clamp(static_cast<std::size_t>(cells), min_resolution, max_resolution);
+  }
+
+  /// Smaller cells need a finer grid.
+  void weigh() {
+    if (!options_.density) return;
+    const auto weigh = [&] { return apply_density(result_, options_.density, context_); };
+    const double finer = std::sqrt(std::min(16.0, timer_.stage("sample", 0, weigh)));
+    if (!result_.plan.refinable || finer < 1.1) return;
+    set_resolution(finer * static_cast<double>(result_.plan.grid.resolution));
+    sample();
+    timer_.stage("sample", 0, weigh);
+  }
+
+  /// Thousands of components smaller than a cell would keep seeds busy in vain.
+  void drop_small() {
+    const double cell = result_.samples.total_area / static_cast<double>(result_.plan.vertices);
+    timer_.stage("sample", 0, [&] {
+      RemainingSurface rest = drop_small_components(std::move(result_.samples), cell, context_);
+      result_.samples = std::move(rest.samples);
+      result_.dropped_components = rest.dropped;
+    });
+    if (result_.samples.size() < result_.plan.vertices)
+      throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
+  }
+
+  const Sampler& sampler_;
+  const MeshOptions& options_;
+  StageTimer& timer_;
+  ExecutionContext& context_;
+  Sampling result_;
+};
+
+void add_findings(const Sampler& sampler, std::size_t non_finite, Sampling& sampling) {
+  const SampleSet& samples = sampling.samples;
+  const auto say = [&](FindingCode code, std::vector<std::pair<std::string, FindingValue>> values = {}) {
+    sampling.findings.push_back(make_finding(code, std::move(values)));
+  };
+  if (samples.disagreements > 0)
+    say(FindingCode::inside_by_vote, {{"count", static_cast<double>(samples.disagreements)}});
+  if (non_finite > 0)
+    say(FindingCode::not_finite, {{"name", sampler.name()}, {"count", static_cast<double>(non_finite)}});
+  if (samples.cut_by_bounds && !sampler.capped_by_bounds()) say(FindingCode::closed_by_bounds);
+  const double all = static_cast<double>(samples.size() + samples.unresolved);
+  if (static_cast<double>(samples.unresolved) > max_unresolved * all)
+    say(FindingCode::crossings_unresolved, {{"spacing", samples.grid.spacing},
+                                            {"count", static_cast<double>(samples.unresolved)},
+                                            {"all", all},
+                                            {"finer", 2.0 * static_cast<double>(sampling.plan.grid.resolution)}});
+}
+
+}  // namespace
+
+Sampling sample_solid(const Sampler& sampler, Plan plan, const MeshOptions& options, StageTimer& timer,
+                      ExecutionContext& context) {
+  const std::size_t before = sampler.non_finite();
+  Sampling sampling = SolidSampling(sampler, std::move(plan), options, timer, context).result();
+  add_findings(sampler, sampler.non_finite() - before, sampling);
+  return sampling;
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,71 @@
+#pragma once
+/// A shape as the pipeline sees it: something that can be sampled.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "band/voxelize.h"
+#include "evenmesh/shape.h"
+#include "grid/sample_set.h"
+#include "pipeline/stage_timer.h"
+#include "sample/projector.h"
+
+namespace evenmesh {
+
+/// How voxels are made. Lengths in voxels.
+struct VoxelPlan {
+  std::size_t resolution = 0;  ///< along the longest side of the bounds
+  unsigned thickness = 0;      ///< half the width of the shell
+  unsigned bridge = 0;         ///< of points: half the width of the gaps between them that are closed
+};
+
+/// Samples one shape. What differs between kinds of shapes is in here, and nowhere else in the pipeline.
+///
+/// Callable from one thread at a time; uses several itself.
+class Sampler {
+ public:
+  explicit Sampler(Shape shape) : shape_(std::move(shape)) {}
+  virtual ~Sampler() = default;
+  Sampler(const Sampler&) = delete;
+  Sampler& operator=(const Sampler&) = delete;
+
+  const std::string& name() const { return shape_.name; }
+  const Box& bounds() const { return shape_.bounds; }
+  /// Closing the solid where the bounds cut it is part of the shape's definition.
+  bool capped_by_bounds() const { return shape_.capped_by_bounds; }
+
+  /// Whether rays can tell inside from outside at all: not for points.
+  virtual bool has_inside() const { return true; }
+  /// How far there is an inside to speak of, [0, 1]: 1 for solids.
+  virtual double solidity(ExecutionContext&) const { return 1; }
+  /// Of the surface, in squared model units, estimated coarsely where it must be; 0 where there is none.
+  virtual double area(ExecutionContext& context) const = 0;
+  /// Mean distance between points, model units; none for surfaces.
+  virtual std::optional<double> point_spacing() const { return std::nullopt; }
+
+  /// The crossings of the solid's surface with a grid. @throws UnusableInput  no surface within the bounds
+  virtual SampleSet sample(const Grid& grid, ExecutionContext& context) const;
+  /// The voxels that the surface touches.
+  virtual SiteVoxels voxelize(const VoxelPlan& plan, ExecutionContext& context) const = 0;
+
+  /// Onto the shape itself, or onto `samples` where single points of it are expensive; null where neither is known.
+  virtual std::unique_ptr<Projector> projector(const SampleSet& samples, ExecutionContext& context) const;
+  /// The last bit of the way for points that were projected onto samples only, all at once.
+  /// @param limit  no point moves farther, model units
+  virtual void step_onto(std::span<Vec3>, double) const {}
+
+  /// Evaluations so far that gave no finite number, over the life of the shape.
+  virtual std::size_t non_finite() const { return 0; }
+
+ protected:
+  Shape shape_;
+};
+
+/// The only place that asks what kind a shape is. Finds bounds where there are none, and cuts the shape by those given.
+/// @throws UnusableInput  nothing bounds it, or its longest side is not between 1e-8 and 1e10
+std::unique_ptr<Sampler> make_sampler(const Shape& shape, const std::optional<Box>& bounds, StageTimer& timer,
+                                      ExecutionContext& context);
+
+}  // namespace evenmesh

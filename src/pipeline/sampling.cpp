@@ -1,0 +1,37 @@
+#include "pipeline/sampling.h"
+
+#include "grid/density.h"
+#include "grid/dexels.h"
+
+namespace evenmesh {
+double apply_density(Sampling& sampling, const Density& density, ExecutionContext& context) {
+  if (sampling.sheet) {
+    SampleSet& drawn = sampling.sheet->on_surface;
+    drawn = weigh_by_density(std::move(drawn), density, context).samples;
+  }
+  WeightedSamples weighted = weigh_by_density(std::move(sampling.samples), density, context);
+  sampling.samples = std::move(weighted.samples);
+  sampling.sizing = SizingField(0, density, weighted.mean_density);
+  return weighted.max_density / weighted.mean_density;
+}
+
+Sampling sample(const Sampler& sampler, Plan plan, const MeshOptions& options, StageTimer& timer,
+                ExecutionContext& context, Artifacts& kept) {
+  const Route route = plan.route;
+  Sampling sampling = route == Route::solid ? sample_solid(sampler, std::move(plan), options, timer, context)
+                                            : sample_band(sampler, std::move(plan), options, timer, context, kept);
+  const double vertices = static_cast<double>(sampling.plan.vertices);
+  sampling.sizing = sampling.sizing.with_mean(edge_length_of(sampling.samples.total_area, vertices));
+  sampling.sampled = sampling.samples.size();
+  if (route == Route::solid) {
+    sampling.disagreements = sampling.samples.disagreements;
+    sampling.unresolved = sampling.samples.unresolved;
+    kept.shell.reset();
+    kept.shell_cut.reset();
+  }
+  if (route == Route::sheets) kept.dexels.reset();
+  if (kept.dexels) kept.dexels = dexels_of(sampling.samples);
+  return sampling;
+}
+
+}  // namespace evenmesh

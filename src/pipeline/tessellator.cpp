@@ -1,0 +1,281 @@
+#include "pipeline/tessellator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "connect/dual_polygons.h"
+#include "connect/flood.h"
+#include "connect/fragments.h"
+#include "cvt/starts.h"
+#include "evenmesh/error.h"
+#include "features/crowding.h"
+#include "grid/surface_components.h"
+
+namespace evenmesh {
+namespace {
+
+constexpr std::size_t relaxing_evaluations = 5;
+constexpr double sheet_effort = 1.7;  ///< a small part of the time there: Q 0.005 higher for 10 % more of it
+
+RelaxOptions relax_options(const MeshOptions& options) {
+  RelaxOptions relax;
+  relax.start = options.start == Start::random       ? SeedStart::random
+                : options.start == Start::blue_noise ? SeedStart::blue_noise
+                                                     : SeedStart::coarse_to_fine;
+  relax.lloyd = options.optimizer == Optimizer::lloyd;
+  relax.tolerance = options.tolerance;
+  relax.seed = options.seed;
+  relax.effort = options.quality == Quality::fast ? 0.5 : options.quality == Quality::high ? 3 : 1;
+  relax.annealing_rounds = options.quality == Quality::high ? 12 : 0;
+  relax.evaluations = options.iterations;
+  return relax;
+}
+
+/// Why sharp edges are not to be followed; empty: they are.
+std::string reason_against(const FeatureCurves& features, std::size_t fixed, const SampleSet& samples,
+                           std::size_t vertices) {
+  constexpr std::size_t many_corners = 100;
+  if (10 * samples.disagreements > samples.size())
+    return "inside and outside were settled by vote in too many places to tell them from noise";
+  // A web of edges as fine as the mesh is noise.
+  const bool web = features.corners.size() > many_corners && 2 * features.corners.size() > fixed;
+  if (web || 2 * fixed > vertices) return "there are too many for meshes this coarse to follow: ask for more vertices";
+  return {};
+}
+
+}  // namespace
+
+Tessellator::Tessellator(Sampling sampling, const MeshOptions& o, StageTimer& t, ExecutionContext& c)
+    : options(o), timer(t), context(c) {
+  result.sampling = std::move(sampling);
+  renew_evaluator();
+}
+
+void Tessellator::renew_evaluator() {
+  evaluator_ = std::make_unique<CellEvaluator>(result.sampling.samples, context);
+}
+
+double Tessellator::edge() const {
+  const std::size_t cells = std::max({wanted(), result.seeds.size(), result.complex.labels});
+  return edge_length_of(result.sampling.samples.total_area, static_cast<double>(cells));
+}
+
+void Tessellator::find_features() {
+  if (!options.feature_angle || result.sampling.plan.route != Route::solid) return;
+  const double edge = result.sampling.sizing.mean();
+  timer.stage("features", 0.01, [&] {
+    result.features = find_feature_curves(result.sampling.samples, *options.feature_angle, edge, context);
+    result.fixed = place_feature_seeds(result.features, edge);
+  });
+  context.log(fmt::format("features: {} curves, {} corners, {} seeds", result.features.curves.size(),
+                          result.features.corners.size(), fixed()));
+  const std::string reason = reason_against(result.features, fixed(), result.sampling.samples, wanted());
+  if (reason.empty()) return;
+  if (const std::size_t count = result.features.curves.size(); count > 0)
+    result.sampling.findings.push_back(
+        make_finding(FindingCode::features_not_followed, {{"count", static_cast<double>(count)}, {"reason", reason}}));
+  result.features = {};
+  result.fixed = {};
+}
+
+void Tessellator::relax_all(std::size_t count) {
+  timer.stage("relax", closed() ? 0.6 : 0.5, [&] {
+    RelaxOptions relax = relax_options(options);
+    if (!closed()) relax.effort *= sheet_effort;
+    if (fixed() > 0)
+      relax.fixed = [&](std::size_t seeds) {
+        if (2 * seeds > count) return result.fixed.places;
+        const double edge = edge_length_of(result.sampling.samples.total_area, double(seeds));
+        return place_feature_seeds(result.features, edge).places;
+      };
+    RelaxResult relaxed = relax_seeds(*evaluator_, count, relax, context);
+    result.seeds = std::move(relaxed.seeds);
+    result.energies.insert(result.energies.end(), relaxed.ratios.begin(), relaxed.ratios.end());
+    result.energy_ratio = relaxed.energy_ratio;
+  });
+}
+
+void Tessellator::relax(std::size_t effort) {
+  timer.stage("relax", 0, [&] {
+    const bool lloyd = options.optimizer == Optimizer::lloyd;
+    const auto relaxed = optimize(*evaluator_, result.seeds,
+                                  {lloyd, effort * relaxing_evaluations, options.tolerance, fixed()}, context);
+    if (closed()) result.energies.insert(result.energies.end(), relaxed.ratios.begin(), relaxed.ratios.end());
+  });
+}
+
+void Tessellator::connect() {
+  timer.stage("connect", 0.1, [&] {
+    evaluator_->nearest(result.seeds, result.labels);
+    if (options.connect == Connect::fragments)
+      connect_as_fragments();
+    else if (closed())
+      connect_solid();
+    else
+      connect_sheets();
+    for (const CellComponent& piece : result.complex.pieces) result.seeds.push_back(piece.centroid);
+  });
+}
+
+void Tessellator::connect_solid() {
+  const SampleSet& samples = result.sampling.samples;
+  if (options.connect == Connect::flood) flood_labels(samples, result.labels, result.seeds, context);
+  if (fixed() > 0) constrain_labels(samples, result.features, result.fixed, result.labels, context);
+  result.complex = connect_labels(samples, result.labels, result.seeds, context, fixed());
+}
+
+/// Along both sides of the shell, of which one has labels.
+void Tessellator::connect_sheets() {
+  const SheetSampling& sheet = *result.sampling.sheet;
+  const SampleSet& both = sheet.both_sides.samples;
+  std::vector<std::uint32_t> all(both.size(), no_label);
+  for (std::size_t i = 0; i < result.labels.size(); ++i) all[sheet.chosen[i]] = result.labels[i];
+  if (options.connect == Connect::flood) flood_labels(both, all, result.seeds, context);
+  result.complex = connect_labels(both, all, result.seeds, context);
+  for (std::size_t i = 0; i < result.labels.size(); ++i) result.labels[i] = all[sheet.chosen[i]];
+}
+
+/// Of sheets, a boundary away from their rim is a hole: a cycle that could not be filled.
+void Tessellator::connect_as_fragments() {
+  const FragmentOptions fragments{.max_cycle = options.max_cycle, .open = !closed()};
+  result.complex = connect_fragments(result.sampling.samples, result.seeds, fragments, context).complex;
+  if (closed()) return;
+  const SheetSampling& sheet = *result.sampling.sheet;
+  std::vector<char> at_rim(result.seeds.size(), 0);
+  for (std::size_t i = 0; i < result.labels.size(); ++i)
+    if (sheet.sheets.border[sheet.chosen[i]]) at_rim[result.labels[i]] = 1;
+  for (const auto& [a, b] : manifold_defects(result.complex.triangles, result.seeds.size()))
+    if (a != b && (!at_rim[a] || !at_rim[b])) result.complex.defects.push_back({a, b});
+}
+
+void Tessellator::forget_split_cells() {
+  result.seeds.resize(given());
+  result.complex.pieces.clear();
+}
+
+std::vector<std::uint32_t> Tessellator::unconnected() const {
+  constexpr double owns_nothing = -1;
+  const SampleSet& samples = result.sampling.samples;
+  std::vector<char> connected(result.seeds.size(), 0);
+  for (const Triangle& t : result.complex.triangles)
+    for (const std::uint32_t l : t) connected[l] = 1;
+  std::vector<double> area(result.seeds.size(), owns_nothing);
+  for (std::size_t i = 0; i < result.labels.size(); ++i) {
+    double& sum = area[result.labels[i]];
+    sum = std::max(sum, 0.0) + samples.area[i];
+  }
+  // Small sheets need three seeds, and small pieces of them are not worth it.
+  const double worth_it = closed() ? owns_nothing : 0.5 * samples.total_area / static_cast<double>(wanted());
+  std::vector<std::uint32_t> list;
+  for (std::uint32_t l = 0; l < area.size(); ++l)
+    if (!connected[l] && area[l] > worth_it) list.push_back(l);
+  return list;
+}
+
+std::vector<Defect> Tessellator::defects() const {
+  auto list = result.complex.defects;
+  for (const std::uint32_t l : unconnected()) list.push_back({l, l});
+  return list;
+}
+
+bool Tessellator::clear_small_components() {
+  if (unconnected().empty()) return false;
+  Sampling& sampling = result.sampling;
+  std::size_t dropped = 0;
+  timer.stage("connect", 0, [&] {
+    const double cell = sampling.samples.total_area / static_cast<double>(wanted());
+    RemainingSurface rest = drop_small_components(std::move(sampling.samples), cell, context);
+    sampling.samples = std::move(rest.samples);
+    dropped = rest.dropped;
+    if (dropped > 0) renew_evaluator();
+  });
+  if (dropped == 0) return false;
+  sampling.dropped_components += dropped;
+  if (sampling.samples.size() < wanted())
+    throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
+  refill_idle_seeds();
+  relax();
+  connect();
+  return true;
+}
+
+/// Seeds whose samples have gone start again elsewhere.
+void Tessellator::refill_idle_seeds() {
+  timer.stage("relax", 0, [&] {
+    forget_split_cells();
+    const std::size_t count = std::min(result.seeds.size(), wanted());
+    evaluator_->nearest(result.seeds, result.labels);
+    std::vector<char> owns(result.seeds.size(), 0);
+    for (const std::uint32_t l : result.labels) owns[l] = 1;
+    std::size_t kept = 0;
+    for (std::size_t s = 0; s < result.seeds.size(); ++s)
+      if (owns[s] || s < fixed()) result.seeds[kept++] = result.seeds[s];
+    result.seeds.resize(kept);
+    if (kept < count) adjust_count(count, 7);
+  });
+}
+
+void Tessellator::adjust_count(std::size_t count, std::uint64_t salt) {
+  evenmesh::adjust_count(*evaluator_, result.seeds, count, options.seed + salt, context, fixed());
+}
+
+void Tessellator::adjust_and_relax(std::size_t count) {
+  timer.stage("relax", 0, [&] { adjust_count(count, 7); });
+  relax();
+}
+
+TopologyRepair Tessellator::plan_repair(std::span<const Vec3> ambiguous, TopologyRepairOptions repair) const {
+  return timer.stage("connect", 0, [&] {
+    // Sheets are repaired by seeds alone, whatever their number was meant to be.
+    repair.edge = closed() ? edge() : edge_length_of(result.sampling.samples.total_area, double(result.seeds.size()));
+    repair.given = given();
+    return plan_topology_repair(result.sampling.samples, result.labels, result.seeds, defects(), ambiguous,
+                                result.balls, repair);
+  });
+}
+
+void Tessellator::unite_changed(std::span<const std::uint32_t> changed) {
+  timer.stage("regularize", 0, [&] {
+    std::vector<Ball> balls;
+    for (const std::uint32_t b : changed) balls.push_back(result.balls.balls()[b]);
+    const std::size_t count = std::min(result.seeds.size(), wanted());
+    result.sampling.samples = unite_balls(result.sampling.samples, balls, context);
+    renew_evaluator();
+    std::vector<Vec3> others(result.seeds.begin() + static_cast<std::ptrdiff_t>(fixed()), result.seeds.end());
+    clear_around(others, result.balls, changed, edge());
+    result.seeds.resize(fixed());
+    result.seeds.insert(result.seeds.end(), others.begin(), others.end());
+    if (result.seeds.size() < count) adjust_count(count, 11);
+    ++result.regularization_rounds;
+  });
+}
+
+void Tessellator::release_features() {
+  std::vector<char> bad(result.seeds.size(), 0);
+  for (const auto& [a, b] : defects()) bad[a] = bad[b] = 1;
+  const FeatureSeeds old = std::move(result.fixed);
+  std::vector<char> doomed(result.features.curves.size(), 0);
+  for (std::size_t s = old.corners; s < old.places.size(); ++s)
+    if (bad[s]) doomed[old.curve_of(s)] = 1;
+  for (std::size_t c = 0; c < doomed.size(); ++c)
+    for (const std::uint32_t corner : {result.features.curves[c].from, result.features.curves[c].to})
+      if (corner != FeatureCurve::none && bad[corner]) doomed[c] = 1;
+  result.features = without_curves(result.features, doomed);
+  result.fixed = place_feature_seeds(result.features, result.sampling.sizing.mean());
+  forget_split_cells();
+  std::set<std::array<double, 3>> stay;
+  for (const Vec3& p : result.fixed.places) stay.insert({p.x, p.y, p.z});
+  std::vector<Vec3> seeds = result.fixed.places;
+  for (std::size_t s = 0; s < result.seeds.size(); ++s) {
+    const Vec3& p = result.seeds[s];
+    if (s >= old.places.size() || !stay.contains({p.x, p.y, p.z})) seeds.push_back(p);
+  }
+  result.seeds = std::move(seeds);
+  connect();
+}
+
+}  // namespace evenmesh

@@ -1,0 +1,81 @@
+#pragma once
+/// The state of tessellate(), and its steps.
+
+#include <memory>
+
+#include "cvt/relax.h"
+#include "pipeline/tessellate.h"
+#include "topology/repair.h"
+
+namespace evenmesh {
+
+/// A pair of labels whose cells do not fit together; twice the same for a cell alone.
+using Defect = std::pair<std::uint32_t, std::uint32_t>;
+
+class Tessellator {
+ public:
+  Tessellator(Sampling sampling, const MeshOptions& options, StageTimer& timer, ExecutionContext& context);
+
+  /// Looks for sharp edges, where seeds are fixed so that the mesh gets an edge there.
+  void find_features();
+  /// Spreads `count` seeds from nothing.
+  void relax_all(std::size_t count);
+  /// A few evaluations for the seeds as they are. @param effort  times as many
+  void relax(std::size_t effort = 1);
+  /// Cells and their dual. Cells in several pieces are split: seeds for the others follow the given ones.
+  void connect();
+  /// Back to the seeds before connect(): it would split their cells again, and those of the pieces with them.
+  void forget_split_cells();
+  /// Drops components smaller than a cell, if some cell got no triangle, and goes on without them.
+  bool clear_small_components();
+  /// Adds or removes free seeds, by the weight of their cells.
+  void adjust_count(std::size_t count, std::uint64_t salt);
+  void adjust_and_relax(std::size_t count);
+  /// Unites the changed balls with the solid, and clears seeds away from them.
+  void unite_changed(std::span<const std::uint32_t> changed);
+  /// Gives up the feature curves whose seeds do not get along; the other seeds of these are free now.
+  void release_features();
+
+  /// Cells that own surface but no triangle.
+  std::vector<std::uint32_t> unconnected() const;
+  std::vector<Defect> defects() const;
+  bool fits() const { return defects().empty(); }
+  TopologyRepair plan_repair(std::span<const Vec3> ambiguous, TopologyRepairOptions options) const;
+
+  bool closed() const { return result.sampling.closed(); }
+  std::size_t wanted() const { return result.sampling.plan.vertices; }
+  std::size_t fixed() const { return result.fixed.places.size(); }
+  /// Seeds that are not those of split cells' pieces.
+  std::size_t given() const { return result.seeds.size() - result.complex.pieces.size(); }
+  /// Mean length of the mesh's edges, as many cells as there are now; model units.
+  double edge() const;
+
+  Tessellation result;
+  CellEvaluator& evaluator() { return *evaluator_; }
+  const MeshOptions& options;
+  StageTimer& timer;
+  ExecutionContext& context;
+
+ private:
+  void connect_solid();
+  void connect_sheets();
+  void connect_as_fragments();
+  void renew_evaluator();
+  void refill_idle_seeds();
+
+  std::unique_ptr<CellEvaluator> evaluator_;
+};
+
+/// Seeds, and balls where seeds cannot help, until all cells fit together or all rounds are used up.
+void repair_solid(Tessellator& state);
+/// The paper's loop: the topology gives way, not the number of vertices. [Raster2Mesh §4.4]
+void simplify_solid(Tessellator& state);
+/// More seeds in cells that do not fit together. Sheets closer than the samples can tell stay together, however many.
+void repair_sheets(Tessellator& state);
+
+/// Where thin walls split cells in two there are more labels than seeds: starts again with fewer.
+void meet_count(Tessellator& state);
+/// Vertices too many or too few are corrected where the topology can do without them: among cells of common size.
+void trim_count(Tessellator& state);
+
+}  // namespace evenmesh

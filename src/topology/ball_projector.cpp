@@ -1,0 +1,44 @@
+#include "topology/ball_projector.h"
+
+namespace evenmesh {
+namespace {
+
+class BallProjector final : public Projector {
+ public:
+  BallProjector(std::unique_ptr<Projector> inner, const BallIndex& balls) : inner_(std::move(inner)), balls_(balls) {}
+
+  Vec3 project(const Vec3& p, double limit) const override {
+    const Vec3 q = inner_ ? inner_->project(p, limit) : p, out = balls_.outside(q);
+    if (out == q) return q;
+    // The shape's own surface is covered here: the spheres count.
+    const Vec3 on_sphere = onto_sphere(p, limit);
+    return squared_norm(on_sphere - p) <= limit * limit ? on_sphere : p;
+  }
+
+ private:
+  /// From outside the nearest sphere within the limit, from inside the way out.
+  Vec3 onto_sphere(const Vec3& p, double limit) const {
+    double nearest = limit;
+    Vec3 best = p;
+    balls_.near(p, limit, [&](std::uint32_t b) {
+      const Ball& ball = balls_.balls()[b];
+      const Vec3 d = p - ball.center;
+      const double length = norm(d), distance = length - ball.radius;
+      if (!(length > 0 && distance > 0 && distance < nearest)) return;
+      nearest = distance;
+      best = ball.center + d * (ball.radius / length);
+    });
+    return balls_.outside(best);
+  }
+
+  std::unique_ptr<Projector> inner_;
+  const BallIndex& balls_;
+};
+
+}  // namespace
+
+std::unique_ptr<Projector> make_ball_projector(std::unique_ptr<Projector> inner, const BallIndex& balls) {
+  return std::make_unique<BallProjector>(std::move(inner), balls);
+}
+
+}  // namespace evenmesh
