@@ -112,7 +112,7 @@ double EvaluateBlock(const BlockView& b, float* lane_sums, const BlockSums& sums
   // across the bisector is 3/(4R)·(1 − t²/R²), the projection of an isotropic density: F and its gradient agree.
   for (std::size_t i = 0; i < b.samples; i += lanes) {
     const V p[3] = {load(d, b.x, i, b.samples), load(d, b.y, i, b.samples), load(d, b.z, i, b.samples)};
-    const V w = load(d, b.area, i, b.samples);
+    const V w = load(d, b.weight, i, b.samples), area = load(d, b.area, i, b.samples);
     const Nearest2 n = nearest_two(d, b, p[0], p[1], p[2]);
     const auto first = hn::ConvertTo(di, n.first), second = hn::ConvertTo(di, n.second);
     V apart[3], length2 = hn::Set(d, 1e-30f);
@@ -121,7 +121,7 @@ double EvaluateBlock(const BlockView& b, float* lane_sums, const BlockSums& sums
       length2 = hn::Add(length2, hn::Mul(apart[a], apart[a]));
     }
     // q = R / |s2 − s1|, u = (distance to the bisector) / R
-    const V q = hn::Div(hn::Set(d, b.footprint), hn::Sqrt(hn::Mul(hn::Max(w, hn::Set(d, b.min_area)), length2)));
+    const V q = hn::Div(hn::Set(d, b.footprint), hn::Sqrt(hn::Mul(hn::Max(area, hn::Set(d, b.min_area)), length2)));
     const V reach = hn::Mul(length2, q);
     const V u = hn::Min(hn::Div(hn::Mul(hn::Set(d, 0.5f), hn::Sub(n.distance_second, n.distance_first)), reach),
                         hn::Set(d, 1.0f));

@@ -8,8 +8,9 @@ namespace evenmesh {
 
 /// Samples of a block and its candidate seeds, all relative to the block's centre. At least one seed.
 struct BlockView {
-  const float *x, *y, *z, *area;
-  float footprint;  ///< a sample of area w has a footprint of radius footprint / √max(w, least_area)
+  const float *x, *y, *z;
+  const float *area, *weight;  ///< size of the footprint and what it counts; the same array where all is even
+  float footprint;             ///< a sample of area a has a footprint of radius footprint / √max(a, min_area)
   float min_area;
   std::size_t samples;
   const float *seed_x, *seed_y, *seed_z;  ///< readable up to a multiple of eight

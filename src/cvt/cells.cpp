@@ -2,7 +2,9 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 
 #include "core/sums.h"
@@ -21,23 +23,69 @@ constexpr double min_slope = 0.25;
 /// So many candidates are tried as they are; more are sorted out first.
 constexpr std::size_t few_candidates = 8;
 
+/// Blocks that one task takes, neighbours mostly: they have a few hundred cells.
+constexpr std::size_t batch = 128;
+
+/// Mass and moments of a cell as 64-bit fixed-point numbers: their sum does not depend on the order.
+using FixedSums = std::array<std::int64_t, 4>;
+
+/// The sums of the cells that one batch of blocks meets, found by seed: a hash table with open addressing.
+class BatchSums {
+ public:
+  FixedSums& of(std::uint32_t seed) {
+    if (2 * entries_.size() >= places_.size()) grow();
+    std::uint32_t& place = find(seed);
+    if (place == none) {
+      place = static_cast<std::uint32_t>(entries_.size());
+      entries_.push_back({{}, seed});
+    }
+    return entries_[place].sums;
+  }
+  /// Adds them to those of all cells.
+  void add_to(std::vector<FixedSums>& cells) const {
+    for (const Entry& entry : entries_)
+      for (std::size_t i = 0; i < 4; ++i) cells[entry.seed][i] += entry.sums[i];
+  }
+  void clear() {
+    entries_.clear();
+    std::fill(places_.begin(), places_.end(), none);
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffffu;
+  struct Entry {
+    FixedSums sums;
+    std::uint32_t seed;
+  };
+  std::uint32_t& find(std::uint32_t seed) {
+    std::size_t at = (seed * 0x9e3779b1u) >> shift_;
+    while (places_[at] != none && entries_[places_[at]].seed != seed) at = at + 1 < places_.size() ? at + 1 : 0;
+    return places_[at];
+  }
+  void grow() {
+    places_.assign(2 * places_.size(), none);
+    --shift_;
+    for (std::uint32_t e = 0; e < entries_.size(); ++e) find(entries_[e].seed) = e;
+  }
+
+  std::vector<Entry> entries_;
+  std::vector<std::uint32_t> places_ = std::vector<std::uint32_t>(1024, none);  ///< 2^(32 − shift) of them
+  unsigned shift_ = 22;
+};
+
 /// Seeds of one block in single precision, and its sums.
 struct Workspace {
   std::vector<float> seeds, sums;
   std::vector<float> lane_sums;
   std::vector<std::uint32_t> candidates, first, second;
   std::vector<float> distance;
+  BatchSums cells;
 
   Workspace(std::size_t largest_block) {
     first.resize(largest_block);
     second.resize(largest_block);
     distance.resize(largest_block);
   }
-};
-
-/// Mass and moments of every cell as 64-bit fixed-point numbers: their sum does not depend on the order.
-struct FixedSums {
-  std::vector<std::array<std::int64_t, 4>> cell;
 };
 
 }  // namespace
@@ -50,7 +98,8 @@ struct CellEvaluator::State {
   std::size_t largest_block = 0;
   std::vector<double> block_energy;
   double footprint_energy = 0;
-  tbb::enumerable_thread_specific<FixedSums> fixed;
+  std::vector<FixedSums> cells;  ///< by seed
+  std::mutex cells_mutex;
   tbb::enumerable_thread_specific<std::unique_ptr<Workspace>> workspaces;
 
   State(const SampleSet& s, ExecutionContext& r)
@@ -62,18 +111,20 @@ struct CellEvaluator::State {
     for (const SampleBlock& b : s.blocks) largest_block = std::max<std::size_t>(largest_block, b.end - b.begin);
     block_energy.resize(s.blocks.size());
     // The second moment of the footprints about their own centres, 2/5·R² each: constant, but part of F.
+    const std::span<const float> weight = s.weights();
     footprint_energy = ordered_sum(context, s.size(), [&](std::size_t i) {
-      return 0.4 * static_cast<double>(s.area[i]) * footprint * footprint / std::max(s.area[i], min_area);
+      return 0.4 * static_cast<double>(weight[i]) * footprint * footprint / std::max(s.area[i], min_area);
     });
   }
 
-  /// Calls work(block index, view, candidates, workspace) for every block, in parallel.
-  template <typename Work>
-  void for_blocks(std::span<const Vec3> seeds, const Work& work) {
-    parallel_for(context, samples.blocks.size(), 128, [&](std::size_t begin, std::size_t end) {
+  /// Calls work(block index, view, candidates, workspace) for every block, in parallel, and finish(workspace) after
+  /// every batch of them.
+  template <typename Work, typename Finish>
+  void for_blocks(std::span<const Vec3> seeds, const Work& work, const Finish& finish) {
+    parallel_tasks(context, (samples.blocks.size() + batch - 1) / batch, [&](std::size_t task) {
       auto& workspace = workspaces.local();
       if (!workspace) workspace = std::make_unique<Workspace>(largest_block);
-      for (std::size_t b = begin; b < end; ++b) {
+      for (std::size_t b = task * batch; b < std::min((task + 1) * batch, samples.blocks.size()); ++b) {
         const SampleBlock& block = samples.blocks[b];
         const auto listed = lists.of_block(b);
         const Vec3 center = samples.block_center(block);
@@ -95,6 +146,7 @@ struct CellEvaluator::State {
                              .y = samples.y.data() + at,
                              .z = samples.z.data() + at,
                              .area = samples.area.data() + at,
+                             .weight = samples.weights().data() + at,
                              .footprint = footprint,
                              .min_area = min_area,
                              .samples = block.end - at,
@@ -104,7 +156,12 @@ struct CellEvaluator::State {
                              .seeds = n};
         work(b, view, candidates, *workspace);
       }
+      finish(*workspace);
     });
+  }
+  template <typename Work>
+  void for_blocks(std::span<const Vec3> seeds, const Work& work) {
+    for_blocks(seeds, work, [](Workspace&) {});
   }
 };
 
@@ -118,16 +175,15 @@ const SampleSet& CellEvaluator::samples() const {
 void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
   State& state = *state_;
   state.lists.update(seeds, state.context);
-  const double area = state.samples.total_area;
-  // Masses add up to `area`, moments to less than area × extent: 2^61 leaves room for rounding.
+  // Masses add up to `weight`, moments to less than weight × extent: 2^61 leaves room for rounding.
+  const double weight = state.samples.total_weight;
   const Grid& grid = state.samples.grid;
   const double extent = grid.spacing * std::max({grid.size[0], grid.size[1], grid.size[2]});
-  const double mass_unit = area * 0x1p-60, moment_unit = area * extent * 0x1p-60;
-  for (FixedSums& f : state.fixed) f.cell.assign(seeds.size(), {});
+  const double mass_unit = weight * 0x1p-60, moment_unit = weight * extent * 0x1p-60;
+  state.cells.assign(seeds.size(), {});
   state.for_blocks(
-      seeds, [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {
-        auto& fixed = state.fixed.local();
-        if (fixed.cell.size() != seeds.size()) fixed.cell.assign(seeds.size(), {});
+      seeds,
+      [&](std::size_t b, const BlockView& view, std::span<const std::uint32_t> candidates, Workspace& work) {
         const std::size_t n = candidates.size();
         work.sums.resize(4 * n);
         work.lane_sums.resize(lane_sums_per_seed * n);
@@ -135,22 +191,26 @@ void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
         state.block_energy[b] = evaluate_block(view, work.lane_sums.data(), out);
         const double to_mass = 1 / mass_unit, to_moment = 1 / moment_unit;
         for (std::size_t c = 0; c < n; ++c) {
-          auto& cell = fixed.cell[candidates[c]];
           if (out.mass[c] == 0 && out.mx[c] == 0) continue;
+          FixedSums& cell = work.cells.of(candidates[c]);
           cell[0] += static_cast<std::int64_t>(out.mass[c] * to_mass);
           cell[1] += static_cast<std::int64_t>(out.mx[c] * to_moment);
           cell[2] += static_cast<std::int64_t>(out.my[c] * to_moment);
           cell[3] += static_cast<std::int64_t>(out.mz[c] * to_moment);
         }
+      },
+      [&](Workspace& work) {
+        {
+          const std::lock_guard lock(state.cells_mutex);
+          work.cells.add_to(state.cells);
+        }
+        work.cells.clear();
       });
   sums.mass.assign(seeds.size(), 0);
   sums.moment.assign(seeds.size(), {});
   parallel_for(state.context, seeds.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      std::array<std::int64_t, 4> total{};
-      for (const FixedSums& f : state.fixed)
-        if (f.cell.size() == seeds.size())
-          for (int a = 0; a < 4; ++a) total[a] += f.cell[i][a];
+      const FixedSums& total = state.cells[i];
       sums.mass[i] = total[0] * mass_unit;
       sums.moment[i] = Vec3{double(total[1]), double(total[2]), double(total[3])} * moment_unit;
     }

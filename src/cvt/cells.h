@@ -11,9 +11,10 @@
 
 namespace evenmesh {
 
-/// What one evaluation of the energy gives. Masses in squared model units.
+/// What one evaluation of the energy gives. Masses in squared model units: w is a sample's weight, the area where all
+/// is even.
 struct CellSums {
-  std::vector<double> mass;  ///< m_i, area of cell i
+  std::vector<double> mass;  ///< m_i, weight of cell i
   std::vector<Vec3> moment;  ///< Σ w (x − s_i) over cell i: the gradient of the energy is −2 · moment
   double energy = 0;         ///< F = Σ_i Σ_{x in cell i} w |x − s_i|²
 };
@@ -26,11 +27,13 @@ struct NearestPair {
 
 /// Evaluates cells of changing seeds on one fixed set of samples.
 ///
-/// A sample is not a point but a small disc of the surface: it is cut by the bisector of its two nearest seeds, and
-/// each part counts for its own seed. With that the energy is smooth in the seeds, and agrees with its gradient
-/// wherever no third seed is as near (docs/cvt.md has the comparison with point samples, boxes and clipped polygons).
+/// A sample is not a point but a small disc of the surface, as large as its area and as heavy as its weight: it is cut
+/// by the bisector of its two nearest seeds, and each part counts for its own seed. With that the energy is smooth in
+/// the seeds, and agrees with its gradient wherever no third seed is as near (docs/cvt.md has the comparison with point
+/// samples, boxes and clipped polygons).
 ///
-/// Guarantee: same bits for any number of threads (sums are 64-bit integers). Cost: about 5 ns per sample and core.
+/// Guarantee: same bits for any number of threads (sums are 64-bit integers). Cost: about 5 ns per sample and core;
+/// memory O(seeds + blocks), and a few dozen KiB per thread.
 /// The discrete form of [Raster2Mesh §4.2].
 class CellEvaluator {
  public:
@@ -52,7 +55,9 @@ class CellEvaluator {
   std::unique_ptr<State> state_;
 };
 
-/// Energy ratio F·k/A² / (5/(18√3)): 1 for a perfect hexagonal tiling of a plane.
+/// Energy ratio F·k/A² / (5/(18√3)): 1 for a perfect hexagonal tiling of a plane, and, with the scale of
+/// weigh_by_density(), for a perfect one of varying density.
+/// @param area  the surface's true area
 double energy_ratio(double energy, std::size_t seeds, double area);
 
 }  // namespace evenmesh

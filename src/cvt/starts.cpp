@@ -57,46 +57,73 @@ std::vector<Border> borders(CellEvaluator& evaluator, const std::vector<Vec3>& s
   return all;
 }
 
+/// A sample that was drawn.
+struct Drawn {
+  std::size_t block, sample;
+};
+
+/// Systematic sampling: one draw from each of `count` parts of equal share; the rest, if any, anywhere.
+std::vector<Drawn> draw(const SampleSet& samples, std::size_t count, std::uint64_t seed) {
+  std::vector<Drawn> drawn;
+  drawn.reserve(count);
+  Random random(seed);
+  double total = samples.total_area;
+  if (!samples.even()) {
+    total = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) total += samples.share(i);
+  }
+  double passed = 0, target = random.uniform() * total / static_cast<double>(count);
+  for (std::size_t b = 0; b < samples.blocks.size(); ++b)
+    for (std::size_t i = samples.blocks[b].begin; i < samples.blocks[b].end; ++i) {
+      passed += samples.share(i);
+      while (drawn.size() < count && passed > target) {
+        drawn.push_back({b, i});
+        target = (static_cast<double>(drawn.size()) + random.uniform()) * total / static_cast<double>(count);
+      }
+    }
+  while (drawn.size() < count) {
+    const std::size_t b = random.below(samples.blocks.size());
+    const SampleBlock& block = samples.blocks[b];
+    drawn.push_back({b, block.begin + random.below(block.end - block.begin)});
+  }
+  return drawn;
+}
+
+/// Edge length wanted at a sample, compared with that of an even mesh of as many vertices.
+double relative_edge(const SampleSet& samples, std::size_t i) {
+  const double share = samples.share(i);
+  return samples.even() || !(share > 0) ? 1 : std::sqrt(samples.area[i] / share);
+}
+
 }  // namespace
 
 std::vector<Vec3> random_start(const SampleSet& samples, std::size_t count, std::uint64_t seed) {
-  // Systematic sampling: one draw from each of `count` equal shares of the area.
   std::vector<Vec3> seeds;
   seeds.reserve(count);
-  Random random(seed);
-  double passed = 0, target = random.uniform() * samples.total_area / static_cast<double>(count);
-  for (std::size_t b = 0; b < samples.blocks.size(); ++b)
-    for (std::size_t i = samples.blocks[b].begin; i < samples.blocks[b].end; ++i) {
-      passed += samples.area[i];
-      while (seeds.size() < count && passed > target) {
-        seeds.push_back(sample_position(samples, b, i));
-        target =
-            (static_cast<double>(seeds.size()) + random.uniform()) * samples.total_area / static_cast<double>(count);
-      }
-    }
-  while (seeds.size() < count) {
-    const std::size_t b = random.below(samples.blocks.size());
-    const SampleBlock& block = samples.blocks[b];
-    seeds.push_back(sample_position(samples, b, block.begin + random.below(block.end - block.begin)));
-  }
+  for (const Drawn& d : draw(samples, count, seed)) seeds.push_back(sample_position(samples, d.block, d.sample));
   return seeds;
 }
 
 std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, std::uint64_t seed) {
   const std::size_t many = std::min(samples.size(), 4 * count);
   if (many <= count) return random_start(samples, count, seed);
-  const std::vector<Vec3> points = random_start(samples, many, seed);
+  std::vector<Vec3> points;
+  std::vector<double> size;  // relative edges
+  for (const Drawn& d : draw(samples, many, seed)) {
+    points.push_back(sample_position(samples, d.block, d.sample));
+    size.push_back(relative_edge(samples, d.sample));
+  }
   // Radius of a disk in the densest packing of `count` disks on the area.
   const double radius = std::sqrt(samples.total_area / (2 * std::sqrt(3.0) * static_cast<double>(count)));
-  const double reach = 2 * radius;
-  const PointHash near(points, reach, samples.grid.origin);
+  const double reach = 2 * radius, side = reach * *std::max_element(size.begin(), size.end());
+  const PointHash near(points, side, samples.grid.origin);
   std::vector<std::vector<std::pair<std::uint32_t, double>>> neighbours(many);
   std::vector<double> crowding(many, 0);
   for (std::size_t p = 0; p < many; ++p)
-    near.near(points[p], reach, [&](std::uint32_t q) {
-      const double distance = norm(points[p] - points[q]);
-      if (q == p || distance >= reach) return;
-      const double weight = std::pow(1 - distance / reach, 8);
+    near.near(points[p], side, [&](std::uint32_t q) {
+      const double distance = norm(points[p] - points[q]), reach_here = reach * 0.5 * (size[p] + size[q]);
+      if (q == p || distance >= reach_here) return;
+      const double weight = std::pow(1 - distance / reach_here, 8);
       neighbours[p].push_back({q, weight});
       crowding[p] += weight;
     });
@@ -137,14 +164,14 @@ void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_
   const SampleSet& samples = evaluator.samples();
   std::vector<std::uint32_t> labels;
   evaluator.nearest(seeds, labels);
-  std::vector<double> mass(seeds.size(), 0);
-  for (std::size_t i = 0; i < labels.size(); ++i) mass[labels[i]] += samples.area[i];
+  std::vector<double> share(seeds.size(), 0);
+  for (std::size_t i = 0; i < labels.size(); ++i) share[labels[i]] += samples.share(i);
   const bool remove = seeds.size() > count;
   const std::size_t first = remove ? std::min(fixed, count) : 0;
   std::vector<std::uint32_t> order(seeds.size() - first);
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(first + i);
   std::sort(order.begin(), order.end(), [&](auto a, auto b) {
-    return mass[a] != mass[b] ? (remove ? mass[a] < mass[b] : mass[a] > mass[b]) : a < b;
+    return share[a] != share[b] ? (remove ? share[a] < share[b] : share[a] > share[b]) : a < b;
   });
   if (remove) {
     std::vector<char> gone(seeds.size(), 0);
@@ -155,7 +182,7 @@ void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_
     seeds.resize(kept);
     return;
   }
-  // A new seed goes to a random sample of a heavy cell.
+  // A new seed goes to a random sample of a cell with a large share.
   std::vector<std::uint32_t> wanted(seeds.size(), 0);
   for (std::size_t i = 0; i + seeds.size() < count; ++i) ++wanted[order[i % order.size()]];
   Random random(seed);

@@ -9,12 +9,13 @@
 
 namespace evenmesh {
 
-/// `count` samples drawn by area (with replacement on few samples). [Raster2Mesh §4.1]
+/// `count` samples drawn by their share in the vertices, the area where all is even (with replacement on few samples).
+/// [Raster2Mesh §4.1]
 std::vector<Vec3> random_start(const SampleSet& samples, std::size_t count, std::uint64_t seed);
 
 /// `count` samples spread by elimination: from several times as many random ones those with the most crowded
-/// neighbourhood go first (Yuksel, Sample elimination for generating Poisson disk sample sets, CGF 2015). Cost: O(count
-/// log count).
+/// neighbourhood go first (Yuksel, Sample elimination for generating Poisson disk sample sets, CGF 2015), near being
+/// measured in wanted edge lengths. Cost: O(count log count).
 std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, std::uint64_t seed);
 
 /// A place on the surface in the middle of every pair of neighbouring cells. With new seeds there they are about four
@@ -24,12 +25,13 @@ std::vector<Vec3> blue_noise_start(const SampleSet& samples, std::size_t count, 
 std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<Vec3>& seeds,
                                     ExecutionContext& context);
 
-/// Adds seeds at random samples of the heaviest cells, or removes the seeds of the lightest, until there are exactly
-/// `count`. The first `held` stay. Seeds that stay keep their order; balance them afterwards.
+/// Adds seeds at random samples of the cells with the largest share (their area where all is even), or removes the
+/// seeds of those with the smallest, until there are exactly `count`. The first `fixed` stay. Seeds that stay keep
+/// their order; balance them afterwards.
 void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed,
                   ExecutionContext& context, std::size_t fixed = 0);
 
-/// `held`, followed by those seeds, from index `first` on, that are not nearer than `reach` to one of them.
+/// `fixed`, followed by those seeds, from index `first` on, that are not nearer than `reach` to one of them.
 std::vector<Vec3> fixed_and_others(std::span<const Vec3> fixed, const std::vector<Vec3>& seeds, std::size_t first,
                                    double reach);
 

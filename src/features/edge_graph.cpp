@@ -71,12 +71,11 @@ class Finder {
       const Vec3 p = position(brick, loop[i]) - samples_.grid.origin;
       node.planes.add_plane(p, normal[i]);
       box.add(p);
-      weight += samples_.area[loop[i]];
-      area += sample_area(normal[i], static_cast<int>(samples_.edge[loop[i]].axis()), samples_.grid.spacing);
+      weight += samples_.weights()[loop[i]];
+      area += samples_.area[loop[i]];
     }
-    // Weights are squared densities (weigh_by_density).
-    if (const double ratio = weight / area; std::abs(ratio - 1) > 1e-3)
-      node.relative_sizing = std::sqrt(std::sqrt(ratio));
+    // Weights are (mean edge / edge)⁴ · area (weigh_by_density).
+    if (!samples_.even() && area > 0) node.relative_sizing = std::sqrt(std::sqrt(weight / area));
     node.place = node.planes.minimum(2, 2);
     const double margin = 0.75 * samples_.grid.spacing;
     for (int a = 0; a < 3; ++a) node.place[a] = std::clamp(node.place[a], box.lo[a] - margin, box.hi[a] + margin);

@@ -1,39 +1,51 @@
 #include "grid/blocks.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <stdexcept>
 
 #include "evenmesh/error.h"
 
 namespace evenmesh {
 
-void resize_samples(SampleSet& set, std::size_t count, bool with_sources, const ExecutionContext& context) {
+namespace {
+
+using ColumnSizes = std::vector<std::function<void()>>;
+
+void run(const ColumnSizes& tasks, const ExecutionContext& context) {
+  parallel_tasks(context, tasks.size(), [&](std::size_t i) { tasks[i](); });
+}
+
+void check_count(std::size_t count) {
   if (count > std::numeric_limits<std::uint32_t>::max())
     throw InvalidInput("more than 4 billion samples: lower the resolution");
-  parallel_tasks(context, 7, [&](std::size_t i) {
-    switch (i) {
-      case 0:
-        set.x.resize(count);
-        break;
-      case 1:
-        set.y.resize(count);
-        break;
-      case 2:
-        set.z.resize(count);
-        break;
-      case 3:
-        set.area.resize(count);
-        break;
-      case 4:
-        set.normal.resize(count);
-        break;
-      case 5:
-        set.edge.resize(count);
-        break;
-      default:
-        set.source.resize(with_sources ? count : 0);
-    }
-  });
+}
+
+}  // namespace
+
+void resize_samples(SampleSet& set, std::size_t count, bool with_sources, const ExecutionContext& context) {
+  check_count(count);
+  ColumnSizes tasks;
+  for_each_column(
+      [&](auto& column) {
+        const void* which = &column;
+        const bool unused = which == &set.weight || (which == &set.source && !with_sources);
+        tasks.emplace_back([&column, size = unused ? 0 : count] { column.resize(size); });
+      },
+      set);
+  run(tasks, context);
+}
+
+void resize_like(SampleColumns& to, const SampleColumns& like, std::size_t count, const ExecutionContext& context) {
+  check_count(count);
+  ColumnSizes tasks;
+  for_each_column(
+      [&](auto& column, const auto& other) {
+        tasks.emplace_back([&column, size = other.empty() ? 0 : count] { column.resize(size); });
+      },
+      to, like);
+  run(tasks, context);
 }
 
 void mark_axes(SampleSet& set, const ExecutionContext& context) {
@@ -50,13 +62,61 @@ void mark_axes(SampleSet& set, const ExecutionContext& context) {
 }
 
 void sum_area(SampleSet& set, const ExecutionContext& context) {
-  std::vector<double> sums(set.blocks.size());
+  struct Sums {
+    double area = 0, weight = 0;
+  };
+  std::vector<Sums> sums(set.blocks.size());
+  const std::span<const float> weight = set.weights();
   parallel_for(context, set.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b)
-      for (std::uint32_t i = set.blocks[b].begin; i < set.blocks[b].end; ++i) sums[b] += set.area[i];
+      for (std::uint32_t i = set.blocks[b].begin; i < set.blocks[b].end; ++i) {
+        sums[b].area += set.area[i];
+        sums[b].weight += weight[i];
+      }
   });
-  set.total_area = 0;
-  for (const double sum : sums) set.total_area += sum;
+  set.total_area = set.total_weight = 0;
+  for (const Sums& sum : sums) {
+    set.total_area += sum.area;
+    set.total_weight += sum.weight;
+  }
+}
+
+SampleSet gather(const SampleSet& set, std::span<const std::uint32_t> index, const ExecutionContext& context) {
+  SampleSet rest;
+  rest.grid = set.grid;
+  rest.disagreements = set.disagreements;
+  rest.unresolved = set.unresolved;
+  rest.cut_by_bounds = set.cut_by_bounds;
+  rest.total_area = set.total_area;
+  rest.total_weight = set.total_weight;
+  const std::span<const float> weight = set.weights();
+  std::uint32_t kept = 0;
+  for (const SampleBlock& block : set.blocks) {
+    SampleBlock made{kept, kept, block.brick, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis > 0) made.axis_begin[static_cast<std::size_t>(axis) - 1] = kept;
+      for (std::uint32_t i = block.begin_of_axis(axis); i < block.end_of_axis(axis); ++i) {
+        if (kept < index.size() && index[kept] == i) {
+          ++kept;
+        } else {
+          rest.total_area -= set.area[i];
+          rest.total_weight -= weight[i];
+        }
+      }
+    }
+    made.end = kept;
+    if (made.end > made.begin) rest.blocks.push_back(made);
+  }
+  if (kept != index.size()) throw std::logic_error("gather: indices must ascend and lie in blocks");
+  resize_like(rest, set, index.size(), context);
+  for_each_column(
+      [&](const auto& from, auto& to) {
+        parallel_for(context, to.size(), 65536, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) to[i] = from[index[i]];
+        });
+      },
+      set, rest);
+  return rest;
 }
 
 }  // namespace evenmesh

@@ -1,59 +1,63 @@
 #pragma once
-/// Writing a SampleSet's arrays.
+/// Writing a SampleSet's columns, and copying some of its samples.
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "core/parallel.h"
 #include "grid/sample_set.h"
 
 namespace evenmesh {
 
-/// Sizes all arrays, in parallel: touching fresh memory costs as much as filling it.
-/// @param with_sources  whether that array is used
+/// Sizes the columns of an even set, in parallel: touching fresh memory costs as much as filling it.
+/// @param with_sources  whether that column is used
 void resize_samples(SampleSet& set, std::size_t count, bool with_sources, const ExecutionContext& context);
+
+/// Sizes the columns that `like` has, and empties the others.
+void resize_like(SampleColumns& to, const SampleColumns& like, std::size_t count, const ExecutionContext& context);
 
 /// Sets every block's axis_begin from the edge codes.
 void mark_axes(SampleSet& set, const ExecutionContext& context);
 
-/// Leaves out the samples for which keep(index) is false, and blocks without samples. The order stays; the rest bounds
-/// no solid any more unless whole parts of the surface go.
-template <typename Keep>
-void keep_samples(SampleSet& set, const Keep& keep);
-
-/// Sets total_area from the samples, summed block by block in order.
+/// Sets total_area and total_weight from the samples, summed block by block in order.
 void sum_area(SampleSet& set, const ExecutionContext& context);
 
+/// Writes sample `index` of `from` to place `at`: all columns that both have.
+inline void copy_sample(const SampleColumns& from, std::size_t index, SampleColumns& to, std::size_t at) {
+  for_each_column(
+      [&](const auto& source, auto& target) {
+        if (!source.empty() && !target.empty()) target[at] = source[index];
+      },
+      from, to);
+}
+
+/// Writes samples [begin, end) of `from` to the places from `at` on: all columns that both have.
+inline void copy_samples(const SampleColumns& from, std::size_t begin, std::size_t end, SampleColumns& to,
+                         std::size_t at) {
+  for_each_column(
+      [&](const auto& source, auto& target) {
+        if (!source.empty() && !target.empty()) std::copy_n(source.data() + begin, end - begin, target.data() + at);
+      },
+      from, to);
+}
+
+/// The samples of `set` with these indices, ascending, and what else is known of the set; blocks without samples go.
+/// Areas and weights of those left out are taken off the totals one by one. The result bounds no solid any more unless
+/// whole components of the surface went. Cost: O(samples).
+SampleSet gather(const SampleSet& set, std::span<const std::uint32_t> index,
+                 const ExecutionContext& context = ExecutionContext::silent());
+
+/// The samples for which keep(index) is true, as gather().
 template <typename Keep>
-void keep_samples(SampleSet& set, const Keep& keep) {
-  std::uint32_t kept = 0;
-  std::vector<SampleBlock> blocks;
-  for (const SampleBlock& block : set.blocks) {
-    SampleBlock rest{kept, kept, block.brick, {}};
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axis > 0) rest.axis_begin[static_cast<std::size_t>(axis) - 1] = kept;
-      for (std::uint32_t i = block.begin_of_axis(axis); i < block.end_of_axis(axis); ++i) {
-        if (!keep(i)) {
-          set.total_area -= set.area[i];
-          continue;
-        }
-        set.x[kept] = set.x[i];
-        set.y[kept] = set.y[i];
-        set.z[kept] = set.z[i];
-        set.area[kept] = set.area[i];
-        set.normal[kept] = set.normal[i];
-        set.edge[kept] = set.edge[i];
-        if (!set.source.empty()) set.source[kept] = set.source[i];
-        ++kept;
-      }
-    }
-    rest.end = kept;
-    if (rest.end > rest.begin) blocks.push_back(rest);
-  }
-  set.blocks = std::move(blocks);
-  for (auto* array : {&set.x, &set.y, &set.z, &set.area}) array->resize(kept);
-  set.normal.resize(kept);
-  set.edge.resize(kept);
-  if (!set.source.empty()) set.source.resize(kept);
+SampleSet keep_samples(const SampleSet& set, const Keep& keep,
+                       const ExecutionContext& context = ExecutionContext::silent()) {
+  std::vector<std::uint32_t> index;
+  for (std::uint32_t i = 0; i < set.size(); ++i)
+    if (keep(i)) index.push_back(i);
+  return gather(set, index, context);
 }
 
 }  // namespace evenmesh

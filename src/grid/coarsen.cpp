@@ -43,14 +43,14 @@ void copy_block(const SampleSet& fine, const SampleBlock& from, int axis, Sample
   for (std::uint32_t i = from.begin_of_axis(axis); i < from.end_of_axis(axis); ++i) {
     const EdgeCode code = fine.edge[i];
     if (!is_kept(code, axis)) continue;
-    coarse.x[out] = fine.x[i] + shift[0];
-    coarse.y[out] = fine.y[i] + shift[1];
-    coarse.z[out] = fine.z[i] + shift[2];
-    coarse.area[out] = 4.0f * fine.area[i];
-    coarse.normal[out] = fine.normal[i];
+    copy_sample(fine, i, coarse, out);
+    coarse.x[out] += shift[0];
+    coarse.y[out] += shift[1];
+    coarse.z[out] += shift[2];
+    coarse.area[out] *= 4.0f;
+    if (!coarse.even()) coarse.weight[out] *= 4.0f;
     coarse.edge[out] = EdgeCode(code.axis(), first_cell[0] + code.i() / 2, first_cell[1] + code.j() / 2,
                                 first_cell[2] + code.k() / 2, code.lower_end_inside());
-    if (!fine.source.empty()) coarse.source[out] = fine.source[i];
     ++out;
   }
 }
@@ -88,7 +88,7 @@ SampleSet coarsen(const SampleSet& fine, ExecutionContext& context) {
       child.push_back(static_cast<std::uint32_t>(g));
       sum += kept[g];
     }
-    resize_samples(coarse, sum, !fine.source.empty(), context);
+    resize_like(coarse, fine, sum, context);
     parallel_for(context, coarse.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         const CoarseBlock& group = groups[child[b]];

@@ -96,16 +96,9 @@ class Combiner {
   InsideRuns in_a_, in_b_;
 };
 
-void copy_sample(const SampleSet& from, std::uint32_t index, bool turned, SampleSet& to, std::uint32_t at) {
-  to.x[at] = from.x[index];
-  to.y[at] = from.y[index];
-  to.z[at] = from.z[index];
-  to.area[at] = from.area[index];
-  to.normal[at] = from.normal[index];
-  to.edge[at] = from.edge[index];
-  if (!turned) return;
-  to.edge[at].bits ^= 1;
-  to.normal[at] = opposite(from.normal[index]);
+void turn_around(SampleSet& set, std::uint32_t sample) {
+  set.edge[sample].bits ^= 1;
+  set.normal[sample] = opposite(set.normal[sample]);
 }
 
 }  // namespace
@@ -140,7 +133,11 @@ SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, con
     for (std::size_t block = begin; block < end; ++block) {
       combiner.take(pairs[pair_of_block[block]], taken);
       std::uint32_t at = set.blocks[block].begin;
-      for (const Taken& t : taken) copy_sample(t.from_b ? b : a, t.index, t.from_b && combiner.turns_b(), set, at++);
+      for (const Taken& t : taken) {
+        copy_sample(t.from_b ? b : a, t.index, set, at);
+        if (t.from_b && combiner.turns_b()) turn_around(set, at);
+        ++at;
+      }
     }
   });
   mark_axes(set, context);

@@ -15,7 +15,7 @@ enum class Boolean { unite, intersect, subtract };
 /// is not seen, as in the operands. Samples have no source. Guarantee: the result bounds a solid whose inside points
 /// are exactly the boolean of the operands'; A op A = A, and De Morgan's laws, bit for bit; same bits for any number of
 /// threads. Cost: about 50 ns per sample of A and B.
-/// @param a, b  on the same grid
+/// @param a, b  on the same grid, not weighted; nor is the result
 /// Based on [Raster2Mesh §5.1.2].
 SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, const ExecutionContext& context);
 

@@ -2,8 +2,10 @@
 /// Samples of a surface on the edges of one common grid, in blocks that are compact in space.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "evenmesh/mesh.h"
@@ -72,23 +74,54 @@ struct SampleBlock {
   std::uint32_t end_of_axis(int axis) const { return axis == 2 ? end : axis_begin[static_cast<std::size_t>(axis)]; }
 };
 
-/// Crossings of the surface with the edges of a grid, at most one per edge; structure of arrays.
-///
-/// Blocks are sorted by the Morton code of their brick (x the lowest bit), samples in a block by edge code.
-struct SampleSet {
-  Grid grid;
-  std::vector<SampleBlock> blocks;
-  std::vector<float> x, y, z;         ///< position relative to block_center(), model units
-  std::vector<float> area;            ///< piece of surface a sample stands for, see sample_area()
+/// What is known of each sample: columns of one length. Those marked optional are empty where they say nothing.
+struct SampleColumns {
+  std::vector<float> x, y, z;  ///< position relative to SampleSet::block_center(), model units
+  std::vector<float> area;     ///< piece of surface a sample stands for, see sample_area(); model units squared
+  /// Optional, empty: equal to the area. What the energy of cells counts a sample by, area · (ē / edge)⁴: `edge` is the
+  /// edge length wanted here, ē that of an even mesh with as many vertices (weigh_by_density() says why). Model units
+  /// squared.
+  std::vector<float> weight;
   std::vector<PackedNormal> normal;   ///< unit, outward
   std::vector<EdgeCode> edge;         ///< of a coarsened set: where it lies there; several samples may share one
-  std::vector<std::uint32_t> source;  ///< triangle of the input mesh; empty for fields
-  double total_area = 0;
+  std::vector<std::uint32_t> source;  ///< optional: triangle of the input mesh
+
+  std::size_t size() const { return x.size(); }
+  bool even() const { return weight.empty(); }
+  std::span<const float> weights() const { return even() ? area : weight; }
+  /// The sample's share of the vertices: its area times the vertices wanted per area here compared with the mean, that
+  /// is √(area · weight). Shares add up to the total area.
+  double share(std::size_t i) const {
+    return even() ? double(area[i]) : std::sqrt(double(area[i]) * double(weight[i]));
+  }
+};
+
+template <typename Visit, typename Column, typename... Columns>
+void visit_column(const Visit& visit, Column column, Columns&... of) {
+  visit(of.*column...);
+}
+/// The list of all columns, the only one: calls visit(a.x, b.x, …), visit(a.y, b.y, …), … for one or more objects with
+/// SampleColumns. Whatever copies samples goes through here (grid/blocks.h).
+template <typename Visit, typename... Columns>
+void for_each_column(const Visit& visit, Columns&... of) {
+  const auto each = [&](auto... column) { (visit_column(visit, column, of...), ...); };
+  each(&SampleColumns::x, &SampleColumns::y, &SampleColumns::z, &SampleColumns::area, &SampleColumns::weight,
+       &SampleColumns::normal, &SampleColumns::edge, &SampleColumns::source);
+}
+
+/// Crossings of the surface with the edges of a grid, at most one per edge; structure of arrays.
+///
+/// Blocks are sorted by the Morton code of their brick (x the lowest bit), samples in a block by edge code. A value:
+/// once made it stays as it is, and what changes samples returns another set.
+struct SampleSet : SampleColumns {
+  Grid grid;
+  std::vector<SampleBlock> blocks;
+  double total_area = 0;          ///< Σ area, model units squared
+  double total_weight = 0;        ///< Σ weights(), model units squared; at least the area
   std::size_t disagreements = 0;  ///< grid points whose inside differed between directions, settled by vote
   std::size_t unresolved = 0;     ///< crossings left out because one grid edge held several (features thinner than h)
   bool cut_by_bounds = false;     ///< the solid reached the bounds and was closed there
 
-  std::size_t size() const { return x.size(); }
   Vec3 block_center(const SampleBlock& b) const {
     constexpr double half = brick_size / 2.0;
     return grid.point(b.brick[0] * double(brick_size) + half, b.brick[1] * double(brick_size) + half,

@@ -31,13 +31,30 @@ std::vector<double> volumes_within(const SurfaceComponents& parts, const SampleS
   return volume;
 }
 
-std::size_t drop_small_components(SampleSet& samples, double min_area, ExecutionContext& context) {
+namespace {
+
+/// The set without the samples of some components.
+RemainingSurface without(SampleSet samples, const SurfaceComponents& parts, const std::vector<char>& dropped,
+                         const ExecutionContext& context) {
+  const auto count = static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), 1));
+  if (count == 0) return {std::move(samples), 0};
+  return {keep_samples(
+              samples, [&](std::uint32_t i) { return !dropped[parts.part[i]]; }, context),
+          count};
+}
+
+}  // namespace
+
+RemainingSurface drop_small_components(SampleSet samples, double min_area, ExecutionContext& context) {
   const SurfaceComponents parts = surface_components(samples, context);
-  const auto dropped = static_cast<std::size_t>(
-      std::count_if(parts.area.begin(), parts.area.end(), [&](double a) { return a < min_area; }));
-  if (dropped == 0) return 0;
-  keep_samples(samples, [&](std::uint32_t i) { return parts.area[parts.part[i]] >= min_area; });
-  return dropped;
+  std::vector<double> share = parts.area;
+  if (!samples.even()) {
+    std::fill(share.begin(), share.end(), 0.0);
+    for (std::size_t i = 0; i < samples.size(); ++i) share[parts.part[i]] += samples.share(i);
+  }
+  std::vector<char> dropped(parts.area.size(), 0);
+  for (std::size_t p = 0; p < dropped.size(); ++p) dropped[p] = parts.area[p] < min_area && share[p] < min_area;
+  return without(std::move(samples), parts, dropped, context);
 }
 
 namespace {
@@ -51,9 +68,9 @@ struct Crossing {
 
 }  // namespace
 
-std::size_t fill_cavities(SampleSet& samples, ExecutionContext& context) {
+RemainingSurface fill_cavities(SampleSet samples, ExecutionContext& context) {
   const SurfaceComponents parts = surface_components(samples, context);
-  if (parts.area.size() < 2) return 0;
+  if (parts.area.size() < 2) return {std::move(samples), 0};
   const std::vector<double> volume = volumes_within(parts, samples);
   std::vector<Crossing> crossings;
   for (const SampleBlock& block : samples.blocks)
@@ -79,9 +96,7 @@ std::size_t fill_cavities(SampleSet& samples, ExecutionContext& context) {
     const auto open = std::find(around.begin(), around.end(), part);
     open == around.end() ? around.push_back(part) : static_cast<void>(around.erase(open));
   }
-  const auto count = static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), 1));
-  if (count > 0) keep_samples(samples, [&](std::uint32_t i) { return !dropped[parts.part[i]]; });
-  return count;
+  return without(std::move(samples), parts, dropped, context);
 }
 
 }  // namespace evenmesh

@@ -19,11 +19,17 @@ SurfaceComponents surface_components(const SampleSet& samples, ExecutionContext&
 /// The volume within every part, from its crossings along x, in cells of the grid. Cavities come out negative.
 std::vector<double> volumes_within(const SurfaceComponents& parts, const SampleSet& samples);
 
-/// Leaves out the parts with less than `least_area`; returns how many.
-std::size_t drop_small_components(SampleSet& samples, double min_area, ExecutionContext& context);
+/// What is left of a surface.
+struct RemainingSurface {
+  SampleSet samples;
+  std::size_t dropped = 0;  ///< components that went; 0: the samples are those given
+};
 
-/// Fills what the outside does not reach: cavities go, with all that lies in them. Returns how many parts of surface
-/// that were. Cost: as surface_components().
-std::size_t fill_cavities(SampleSet& samples, ExecutionContext& context);
+/// Leaves out components that are too small for one cell: those with less than `min_area` (model units squared), both
+/// of area and of share in the vertices. Where a density asks for more, a smaller component counts, too.
+RemainingSurface drop_small_components(SampleSet samples, double min_area, ExecutionContext& context);
+
+/// Fills what the outside does not reach: cavities go, with all that lies in them. Cost: as surface_components().
+RemainingSurface fill_cavities(SampleSet samples, ExecutionContext& context);
 
 }  // namespace evenmesh

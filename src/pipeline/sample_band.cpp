@@ -29,12 +29,12 @@ SiteVoxels outer_border(const BandSurface& surface, const Sheets& outer, const V
 
 /// The inner side of a shell, turned around: the border of what the shell encloses.
 SampleSet enclosed_by(const BandSurface& surface, ExecutionContext& context) {
-  SampleSet samples = surface.samples;
-  const SurfaceComponents parts = surface_components(samples, context);
+  const SurfaceComponents parts = surface_components(surface.samples, context);
   std::vector<double> behind(parts.area.size(), 0);
-  for (std::uint32_t i = 0; i < samples.size(); ++i)
-    if (surface.facing[i] < 0) behind[parts.part[i]] += samples.area[i];
-  keep_samples(samples, [&](std::uint32_t i) { return behind[parts.part[i]] > 0.5 * parts.area[parts.part[i]]; });
+  for (std::uint32_t i = 0; i < surface.samples.size(); ++i)
+    if (surface.facing[i] < 0) behind[parts.part[i]] += surface.samples.area[i];
+  const auto is_inner = [&](std::uint32_t i) { return behind[parts.part[i]] > 0.5 * parts.area[parts.part[i]]; };
+  SampleSet samples = keep_samples(surface.samples, is_inner, context);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples.edge[i].bits ^= 1;
     samples.normal[i] = pack_normal(-unpack_normal(samples.normal[i]));
@@ -150,8 +150,7 @@ class BandSampling {
     sheet.sheets = choose_sheets(sheet.both_sides, sites, min_area, context_);
     for (std::uint32_t i = 0; i < sheet.sheets.chosen.size(); ++i)
       if (sheet.sheets.chosen[i]) sheet.chosen.push_back(i);
-    result_.samples = both;
-    keep_samples(result_.samples, [&](std::uint32_t i) { return sheet.sheets.chosen[i] != 0; });
+    result_.samples = gather(both, sheet.chosen, context_);
     sheet.on_surface = drawn_onto_surface(result_.samples, sheet.chosen, sheet.both_sides, sites, context_);
   }
 

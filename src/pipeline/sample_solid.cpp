@@ -38,7 +38,11 @@ class SolidSampling {
     const Grid grid = make_grid(sampler_.bounds(), result_.plan.grid.resolution);
     result_.samples = timer_.stage("sample", 0.1, [&] { return sampler_.sample(grid, context_); });
     if (!options_.fill_cavities) return;
-    result_.filled_cavities = timer_.stage("sample", 0, [&] { return fill_cavities(result_.samples, context_); });
+    timer_.stage("sample", 0, [&] {
+      RemainingSurface rest = fill_cavities(std::move(result_.samples), context_);
+      result_.samples = std::move(rest.samples);
+      result_.filled_cavities = rest.dropped;
+    });
   }
 
   /// Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
@@ -69,8 +73,11 @@ class SolidSampling {
   /// Thousands of components smaller than a cell would keep seeds busy in vain.
   void drop_small() {
     const double cell = result_.samples.total_area / static_cast<double>(result_.plan.vertices);
-    result_.dropped_components =
-        timer_.stage("sample", 0, [&] { return drop_small_components(result_.samples, cell, context_); });
+    timer_.stage("sample", 0, [&] {
+      RemainingSurface rest = drop_small_components(std::move(result_.samples), cell, context_);
+      result_.samples = std::move(rest.samples);
+      result_.dropped_components = rest.dropped;
+    });
     if (result_.samples.size() < result_.plan.vertices)
       throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
   }

@@ -188,7 +188,9 @@ bool Tessellator::clear_small_components() {
   std::size_t dropped = 0;
   timer.stage("connect", 0, [&] {
     const double cell = sampling.samples.total_area / static_cast<double>(wanted());
-    dropped = drop_small_components(sampling.samples, cell, context);
+    RemainingSurface rest = drop_small_components(std::move(sampling.samples), cell, context);
+    sampling.samples = std::move(rest.samples);
+    dropped = rest.dropped;
     if (dropped > 0) renew_evaluator();
   });
   if (dropped == 0) return false;

@@ -45,11 +45,8 @@ struct Bracket {
 };
 
 /// Samples of a few neighbouring bricks, in their final order.
-struct FieldPart {
+struct FieldPart : SampleColumns {
   std::vector<SampleBlock> blocks;  ///< ranges count from this part's first sample
-  std::vector<float> x, y, z, area;
-  std::vector<PackedNormal> normal;
-  std::vector<EdgeCode> edge;
   bool cut_by_bounds = false;
 };
 

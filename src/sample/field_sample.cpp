@@ -254,17 +254,8 @@ SampleSet join_parts(const Grid& grid, const std::vector<FieldPart>& parts, cons
   resize_samples(set, count, false, context);
   parallel_for(context, pieces.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const FieldPart& part = parts[pieces[i].part];
-      const auto copy = [&](const auto& from, auto& to) {
-        std::copy(from.begin() + pieces[i].block.begin, from.begin() + pieces[i].block.end,
-                  to.begin() + set.blocks[i].begin);
-      };
-      copy(part.x, set.x);
-      copy(part.y, set.y);
-      copy(part.z, set.z);
-      copy(part.area, set.area);
-      copy(part.normal, set.normal);
-      copy(part.edge, set.edge);
+      const SampleBlock& block = pieces[i].block;
+      copy_samples(parts[pieces[i].part], block.begin, block.end, set, set.blocks[i].begin);
     }
   });
   return set;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "grid/blocks.h"
 #include "grid/morton.h"
 
 namespace evenmesh {
@@ -60,12 +61,8 @@ class BrickSigns {
 };
 
 /// The samples of one brick after the union.
-struct NewBlock {
+struct NewBlock : SampleColumns {
   std::array<std::uint16_t, 3> brick{};
-  std::vector<float> x, y, z, area;
-  std::vector<PackedNormal> normal;
-  std::vector<EdgeCode> edge;
-  std::vector<std::uint32_t> source;
 };
 
 class Union {
@@ -77,6 +74,7 @@ class Union {
 
   SampleSet result() {
     find_bricks();
+    if (!samples_.even()) find_relative_weights();
     std::vector<NewBlock> made(touched_.size());
     parallel_for(context_, touched_.size(), 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) made[t] = remake(touched_[t].first, touched_[t].second);
@@ -117,6 +115,28 @@ class Union {
       if (touched_.empty() || touched_.back().first != key) touched_.push_back({key, {}});
       touched_.back().second.push_back(b);
     }
+  }
+
+  /// Of what a ball adds: weight over area of the samples in the bricks that it touches.
+  void find_relative_weights() {
+    std::vector<double> area(balls_.size(), 0), weight(balls_.size(), 0);
+    for (const auto& [key, balls] : touched_) {
+      const std::int64_t at = block_at(key);
+      if (at < 0) continue;
+      const SampleBlock& block = samples_.blocks[static_cast<std::size_t>(at)];
+      double area_here = 0, weight_here = 0;
+      for (std::uint32_t i = block.begin; i < block.end; ++i) {
+        area_here += samples_.area[i];
+        weight_here += samples_.weight[i];
+      }
+      for (const std::uint32_t b : balls) {
+        area[b] += area_here;
+        weight[b] += weight_here;
+      }
+    }
+    relative_weight_.resize(balls_.size());
+    for (std::size_t b = 0; b < balls_.size(); ++b)
+      relative_weight_[b] = area[b] > 0 ? weight[b] / area[b] : samples_.total_weight / samples_.total_area;
   }
 
   /// A brick without crossings is inside or outside as a whole: as the last layer of the next brick towards −x that has
@@ -186,6 +206,7 @@ class Union {
       normal = unpack_normal(samples_.normal[old]);
     }
     bool moved = false;
+    std::uint32_t ball = balls.front();
     for (int attempt = 0; attempt < 4; ++attempt) {  // out of one ball, perhaps into the next
       double farthest = t;
       for (const std::uint32_t b : balls) {
@@ -194,10 +215,10 @@ class Union {
         if (inside <= 0) continue;
         const double along = dot(p, step) / (h * h);
         const double exit = t - along + std::sqrt(along * along + inside / (h * h));
-        if (exit > farthest) {
-          farthest = exit;
-          normal = normalized(from + exit * step - balls_[b].center);
-        }
+        if (exit <= farthest) continue;
+        farthest = exit;
+        normal = normalized(from + exit * step - balls_[b].center);
+        ball = b;
       }
       if (farthest <= t) break;
       t = farthest;
@@ -209,14 +230,49 @@ class Union {
     }
     const Vec3 p = from + t * step - center;
     const bool keep = old != none && !moved;
-    out.x.push_back(keep ? samples_.x[old] : static_cast<float>(p.x));
-    out.y.push_back(keep ? samples_.y[old] : static_cast<float>(p.y));
-    out.z.push_back(keep ? samples_.z[old] : static_cast<float>(p.z));
-    out.area.push_back(keep ? samples_.area[old] : static_cast<float>(sample_area(normal, axis, h)));
-    out.normal.push_back(keep ? samples_.normal[old] : pack_normal(normal));
-    out.edge.push_back(EdgeCode(static_cast<unsigned>(axis), static_cast<unsigned>(at[0]), static_cast<unsigned>(at[1]),
-                                static_cast<unsigned>(at[2]), lower_inside));
-    if (!samples_.source.empty()) out.source.push_back(old != none ? samples_.source[old] : 0);
+    const std::size_t at_end = out.size();
+    for_each_column(
+        [&](const auto& from_old, auto& column) {
+          if (!from_old.empty()) {
+            column.emplace_back();
+            if (old != none) column.back() = from_old[old];
+          }
+        },
+        samples_, out);
+    out.edge[at_end] = EdgeCode(static_cast<unsigned>(axis), static_cast<unsigned>(at[0]), static_cast<unsigned>(at[1]),
+                                static_cast<unsigned>(at[2]), lower_inside);
+    if (keep) return;
+    out.x[at_end] = static_cast<float>(p.x);
+    out.y[at_end] = static_cast<float>(p.y);
+    out.z[at_end] = static_cast<float>(p.z);
+    out.area[at_end] = static_cast<float>(sample_area(normal, axis, h));
+    if (!out.even()) out.weight[at_end] = static_cast<float>(sample_area(normal, axis, h) * relative_weight_[ball]);
+    out.normal[at_end] = pack_normal(normal);
+  }
+
+  /// Samples [begin, end) of a brick, before or after the union.
+  struct Source {
+    const SampleColumns* samples;
+    std::size_t begin, end;
+    std::array<std::uint16_t, 3> brick;
+  };
+
+  /// In the order of the bricks.
+  std::vector<Source> sources(const std::vector<NewBlock>& made) const {
+    std::vector<Source> list;
+    std::size_t next = 0;
+    for (std::size_t b = 0; b <= keys_.size(); ++b) {
+      const std::uint64_t key = b < keys_.size() ? keys_[b] : ~std::uint64_t{0};
+      bool replaced = false;
+      for (; next < touched_.size() && touched_[next].first <= key; ++next) {
+        if (made[next].size() > 0) list.push_back({&made[next], 0, made[next].size(), made[next].brick});
+        replaced |= touched_[next].first == key;
+      }
+      if (b == keys_.size() || replaced) continue;
+      const SampleBlock& block = samples_.blocks[b];
+      list.push_back({&samples_, block.begin, block.end, block.brick});
+    }
+    return list;
   }
 
   SampleSet merge(const std::vector<NewBlock>& made) const {
@@ -225,47 +281,21 @@ class Union {
     out.disagreements = samples_.disagreements;
     out.unresolved = samples_.unresolved;
     out.cut_by_bounds = samples_.cut_by_bounds;
-    std::size_t next = 0;
-    const auto append = [](auto& to, const auto& from, std::size_t begin, std::size_t end) {
-      if (!from.empty())
-        to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(begin),
-                  from.begin() + static_cast<std::ptrdiff_t>(end));
-    };
-    const auto close_block = [&](std::uint32_t begin, const std::array<std::uint16_t, 3>& brick) {
-      const auto end = static_cast<std::uint32_t>(out.x.size());
-      if (end == begin) return;
-      SampleBlock block{begin, end, brick, {}};
-      for (unsigned a = 1; a < 3; ++a)
-        block.axis_begin[a - 1] =
-            static_cast<std::uint32_t>(std::partition_point(out.edge.begin() + begin, out.edge.begin() + end,
-                                                            [&](EdgeCode e) { return e.axis() < a; }) -
-                                       out.edge.begin());
-      for (std::uint32_t i = begin; i < end; ++i) out.total_area += out.area[i];
-      out.blocks.push_back(block);
-    };
-    const auto copy = [&](const auto& from, std::size_t begin, std::size_t end) {
-      append(out.x, from.x, begin, end);
-      append(out.y, from.y, begin, end);
-      append(out.z, from.z, begin, end);
-      append(out.area, from.area, begin, end);
-      append(out.normal, from.normal, begin, end);
-      append(out.edge, from.edge, begin, end);
-      append(out.source, from.source, begin, end);
-    };
-    for (std::size_t b = 0; b <= keys_.size(); ++b) {
-      const std::uint64_t key = b < keys_.size() ? keys_[b] : ~std::uint64_t{0};
-      bool replaced = false;
-      for (; next < touched_.size() && touched_[next].first <= key; ++next) {
-        const auto begin = static_cast<std::uint32_t>(out.x.size());
-        copy(made[next], 0, made[next].x.size());
-        close_block(begin, made[next].brick);
-        replaced |= touched_[next].first == key;
-      }
-      if (b == keys_.size() || replaced) continue;
-      const auto begin = static_cast<std::uint32_t>(out.x.size());
-      copy(samples_, samples_.blocks[b].begin, samples_.blocks[b].end);
-      close_block(begin, samples_.blocks[b].brick);
+    const std::vector<Source> list = sources(made);
+    std::size_t count = 0;
+    for (const Source& from : list) {
+      const auto begin = static_cast<std::uint32_t>(count);
+      count += from.end - from.begin;
+      out.blocks.push_back({begin, static_cast<std::uint32_t>(count), from.brick, {}});
     }
+    resize_like(out, samples_, count, context_);
+    parallel_for(context_, list.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b)
+        copy_samples(*list[b].samples, list[b].begin, list[b].end, out, out.blocks[b].begin);
+    });
+    mark_axes(out, context_);
+    for (const float area : out.area) out.total_area += area;
+    for (const float weight : out.weights()) out.total_weight += weight;
     return out;
   }
 
@@ -274,6 +304,7 @@ class Union {
   ExecutionContext& context_;
   std::vector<std::uint64_t> keys_;  ///< of the blocks, ascending
   std::vector<std::pair<std::uint64_t, std::vector<std::uint32_t>>> touched_;
+  std::vector<double> relative_weight_;  ///< by ball; unused where the samples are even
 };
 
 }  // namespace

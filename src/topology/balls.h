@@ -17,7 +17,8 @@ struct Ball {
 };
 
 /// The samples of the union of a sampled solid and some balls, on the same grid. Samples inside a ball are dropped, new
-/// ones lie on the spheres; the outermost grid points stay outside.
+/// ones lie on the spheres; the outermost grid points stay outside. What is new weighs what the surface around
+/// the ball does, area for area.
 ///
 /// Guarantee: the samples bound a solid, in the order a SampleSet promises; same bits for any number of threads.
 /// Cost: O(samples) for copying, and about a microsecond for every grid point near a ball.

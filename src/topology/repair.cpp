@@ -188,17 +188,18 @@ void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<co
 void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std::span<const std::uint32_t> labels,
                          std::size_t count, std::size_t fixed) {
   if (seeds.empty()) return;
-  std::vector<double> area(seeds.size(), 0);
+  std::vector<double> share(seeds.size(), 0);
   for (std::size_t i = 0; i < labels.size(); ++i)
-    if (labels[i] < area.size()) area[labels[i]] += samples.area[i];
-  std::vector<double> sorted = area;
+    if (labels[i] < share.size()) share[labels[i]] += samples.share(i);
+  std::vector<double> sorted = share;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double median = *middle, apart = 1.6 * std::sqrt(median);
   std::vector<std::uint32_t> order;
   for (auto s = static_cast<std::uint32_t>(fixed); s < seeds.size(); ++s)
-    if (area[s] >= 0.9 * median) order.push_back(s);
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return area[a] != area[b] ? area[a] < area[b] : a < b; });
+    if (share[s] >= 0.9 * median) order.push_back(s);
+  std::sort(order.begin(), order.end(),
+            [&](auto a, auto b) { return share[a] != share[b] ? share[a] < share[b] : a < b; });
 
   const PointHash index(seeds, apart);
   std::vector<char> gone(seeds.size(), 0), beside(seeds.size(), 0);

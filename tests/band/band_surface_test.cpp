@@ -58,11 +58,10 @@ TEST(BandSurface, IsTwoSpheresAroundASphere) {
 TEST(BandSurface, DrawnOntoASphereLiesOnIt) {
   const BandOf made = band_of(make_icosphere(5), 48, 2);
   // Those in front only: a subset, as for a sheet.
-  SampleSet front = made.surface.samples;
   std::vector<std::uint32_t> index;
   for (std::uint32_t i = 0; i < made.surface.facing.size(); ++i)
     if (made.surface.facing[i] > 0) index.push_back(i);
-  keep_samples(front, [&](std::uint32_t i) { return made.surface.facing[i] > 0; });
+  const SampleSet front = gather(made.surface.samples, index);
   evenmesh::ExecutionContext context(2);
   const SampleSet drawn = drawn_onto_surface(front, index, made.surface, made.sites, context);
   ASSERT_EQ(drawn.size(), front.size());
@@ -153,42 +152,6 @@ TEST(BridgePoints, EndsWhereThePointsEnd) {
 
 TEST(BridgePoints, SameBytesForAnyNumberOfThreads) {
   expect_same(bridged(ball_of_points(2000), false, 40, 1).sites, bridged(ball_of_points(2000), false, 40, 3).sites);
-}
-
-TEST(KeepSamples, LeavesTheRestAsItWas) {
-  for (const bool with_sources : {true, false}) {
-    SampleSet set = sampled(make_torus(), 32);
-    set.source.resize(with_sources ? set.size() : 0);
-    std::iota(set.source.begin(), set.source.end(), 0u);
-    const SampleSet before = set;
-    Random random(3);
-    std::vector<char> kept(set.size());
-    for (char& k : kept) k = random.below(3) == 0;
-    for (std::uint32_t i = before.blocks[2].begin; i < before.blocks[2].end; ++i) kept[i] = 0;
-    keep_samples(set, [&](std::uint32_t i) { return kept[i] != 0; });
-    ASSERT_EQ(set.size(), static_cast<std::size_t>(std::count(kept.begin(), kept.end(), 1)));
-    expect_well_formed(set);
-    EXPECT_LT(set.blocks.size(), before.blocks.size()) << "blocks without samples go";
-    EXPECT_EQ(set.source.size(), with_sources ? set.size() : 0);
-    std::vector<Vec3> expected, got;
-    for_samples(before, [&](std::size_t i, const Vec3& p) {
-      if (kept[i]) expected.push_back(p);
-    });
-    for_samples(set, [&](std::size_t, const Vec3& p) { got.push_back(p); });
-    EXPECT_EQ(got, expected);
-    for (std::size_t i = 0; i < set.source.size(); ++i) EXPECT_TRUE(kept[set.source[i]]);
-  }
-}
-
-TEST(KeepSamples, AllOrNone) {
-  const SampleSet before = sampled(make_icosphere(2), 24);
-  SampleSet all = before, none = before;
-  keep_samples(all, [](std::uint32_t) { return true; });
-  expect_same(all, before);
-  keep_samples(none, [](std::uint32_t) { return false; });
-  EXPECT_EQ(none.size(), 0u);
-  EXPECT_TRUE(none.blocks.empty());
-  EXPECT_NEAR(none.total_area, 0, 1e-9);
 }
 
 }  // namespace

@@ -38,10 +38,8 @@ Chosen chosen(const Mesh& mesh, std::size_t resolution, unsigned threads = 2, do
   std::vector<std::uint32_t> index;
   for (std::uint32_t i = 0; i < result.sheets.chosen.size(); ++i)
     if (result.sheets.chosen[i]) index.push_back(i);
-  result.samples = result.made.surface.samples;
-  keep_samples(result.samples, [&](std::uint32_t i) { return result.sheets.chosen[i] != 0; });
-  result.samples =
-      drawn_onto_surface(std::move(result.samples), index, result.made.surface, result.made.sites, context);
+  result.samples = drawn_onto_surface(gather(result.made.surface.samples, index), index, result.made.surface,
+                                      result.made.sites, context);
   return result;
 }
 
@@ -176,8 +174,7 @@ TEST(Sheets, OuterSidesAreClosed) {
     inward += outer.chosen[i] && p.x < 1.3 && dot(unpack_normal(made.surface.samples.normal[i]), p) < 0;
   });
   EXPECT_EQ(inward, 0u);
-  SampleSet kept = made.surface.samples;
-  keep_samples(kept, [&](std::uint32_t i) { return outer.chosen[i] != 0; });
+  const SampleSet kept = keep_samples(made.surface.samples, [&](std::uint32_t i) { return outer.chosen[i] != 0; });
   EXPECT_EQ(surface_components(kept, context).area.size(), outer.sheets) << "whole parts bound a solid";
 }
 

@@ -163,10 +163,10 @@ TEST(Fragments, BalancedCellsHaveTheTopologyOfTheSurface) {
 
 TEST(Fragments, NeedNoSolid) {
   // A third of the samples has gone at random: no inside is left, but the cells still meet.
-  SampleSet samples = sampled_gallery("torus", 100);
-  const std::vector<Vec3> seeds = relaxed_seeds(samples, 250);
+  const SampleSet all = sampled_gallery("torus", 100);
+  const std::vector<Vec3> seeds = relaxed_seeds(all, 250);
   Random random(3);
-  keep_samples(samples, [&](std::uint32_t) { return random.below(3) > 0; });
+  const SampleSet samples = keep_samples(all, [&](std::uint32_t) { return random.below(3) > 0; });
   const Fragments fragments = fragments_of(samples, seeds);
   EXPECT_TRUE(fragments.complex.defects.empty());
   EXPECT_TRUE(is_closed_manifold(fragments.complex.triangles, seeds.size()));
@@ -175,9 +175,9 @@ TEST(Fragments, NeedNoSolid) {
 }
 
 TEST(Fragments, OpenSurfacesHaveABoundary) {
-  SampleSet samples = sampled(make_icosphere(5), 80);
-  const auto points = positions_of(samples);
-  keep_samples(samples, [&](std::uint32_t i) { return points[i].z > 0; });
+  const SampleSet all = sampled(make_icosphere(5), 80);
+  const auto points = positions_of(all);
+  const SampleSet samples = keep_samples(all, [&](std::uint32_t i) { return points[i].z > 0; });
   const std::vector<Vec3> seeds = relaxed_seeds(samples, 200);
   const Fragments fragments = fragments_of(samples, seeds, {.open = true});
   EXPECT_TRUE(fragments.complex.defects.empty());

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "cvt/cvt_testing.h"
+#include "grid/density.h"
 
 namespace evenmesh {
 namespace {
@@ -242,6 +243,43 @@ TEST(Cells, ResultsDoNotDependOnEarlierCalls) {
   EXPECT_TRUE(same_bytes(fresh.mass, used.mass));
   EXPECT_TRUE(same_bytes(fresh.moment, used.moment));
   EXPECT_EQ(fresh.energy, used.energy);
+}
+
+/// Density on a surface, as a set with weights.
+SampleSet weighted(const SampleSet& even, const Density& density) {
+  evenmesh::ExecutionContext context(1);
+  return weigh_by_density(even, density, context).samples;
+}
+
+TEST(Cells, MassesAreWeightsAndFootprintsAreAreas) {
+  // Weights 256 times as large everywhere: the same cells, cut at the same places, masses and energy 256 times as
+  // large.
+  evenmesh::ExecutionContext context(1);
+  const SampleSet even = sampled(make_torus(), 48);
+  SampleSet heavy = even;
+  for (const float area : even.area) heavy.weight.push_back(256 * area);
+  heavy.total_weight = 256 * even.total_area;
+  const auto seeds = perturbed_seeds(even, 150, 0.01, 3);
+  CellSums sums, heavy_sums;
+  CellEvaluator(even, context).evaluate(seeds, sums);
+  CellEvaluator(heavy, context).evaluate(seeds, heavy_sums);
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    ASSERT_EQ(heavy_sums.mass[i], 256 * sums.mass[i]);
+    ASSERT_EQ(heavy_sums.moment[i], 256 * sums.moment[i]);
+  }
+  EXPECT_EQ(heavy_sums.energy, 256 * sums.energy);
+}
+
+TEST(Cells, MassesAddUpToTheWeight) {
+  evenmesh::ExecutionContext context(1);
+  const SampleSet samples = weighted(sampled(make_torus(), 48), [](const Vec3& p) { return 1 + 4 * (p.x > 0); });
+  const auto seeds = perturbed_seeds(samples, 150, 0, 3);
+  CellSums sums;
+  CellEvaluator(samples, context).evaluate(seeds, sums);
+  double mass = 0;
+  for (const double m : sums.mass) mass += m;
+  EXPECT_NEAR(mass, samples.total_weight, 1e-5 * samples.total_weight);
+  EXPECT_GT(mass, 1.2 * samples.total_area);
 }
 
 TEST(Cells, CancelTakesEffect) {

@@ -2,6 +2,7 @@
 
 #include "cvt/cvt_testing.h"
 #include "geometry/closest_point.h"
+#include "grid/density.h"
 
 namespace evenmesh {
 namespace {
@@ -63,6 +64,26 @@ TEST(Balance, SameBitsForAnyNumberOfThreads) {
     EXPECT_TRUE(same_bytes(result.seeds, results[0].seeds));
     EXPECT_TRUE(same_bytes(result.ratios, results[0].ratios));
   }
+}
+
+TEST(Balance, DensityGivesCellsTheirShare) {
+  // Four times as many per area at the top of a ball as at the bottom.
+  evenmesh::ExecutionContext context(2);
+  const SampleSet samples = weigh_by_density(
+                                sampled(make_icosphere(5), 110), [](const Vec3& p) { return 5 + 3 * p.z; }, context)
+                                .samples;
+  CellEvaluator evaluator(samples, context);
+  const std::size_t count = 800;
+  const RelaxResult result = relax_seeds(evaluator, count, {}, context);
+  EXPECT_NEAR(result.energy_ratio, 1, 0.04) << "as without a density";
+  std::vector<std::uint32_t> labels;
+  evaluator.nearest(result.seeds, labels);
+  std::vector<double> share(count, 0);
+  for (std::size_t i = 0; i < labels.size(); ++i) share[labels[i]] += samples.share(i);
+  const double mean = samples.total_area / double(count);
+  double variance = 0;
+  for (const double s : share) variance += (s / mean - 1) * (s / mean - 1) / double(count);
+  EXPECT_LT(std::sqrt(variance), 0.1);
 }
 
 TEST(Balance, AnnealingDoesNotRaiseTheEnergyMuch) {

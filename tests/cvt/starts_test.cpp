@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "cvt/cvt_testing.h"
+#include "grid/density.h"
 
 namespace evenmesh {
 namespace {
@@ -23,6 +24,17 @@ TEST(Starts, RandomSeedsAreSpreadByArea) {
   EXPECT_NEAR(static_cast<double>(on_small), 100, 12);
   EXPECT_EQ(seeds, random_start(samples, 1000, 5));
   EXPECT_NE(seeds, random_start(samples, 1000, 6));
+}
+
+TEST(Starts, DensityDrawsByShare) {
+  evenmesh::ExecutionContext context(1);
+  const SampleSet even = sampled(make_icosphere(4), 80);
+  const auto top_heavy = [](const Vec3& p) { return p.z > 0 ? 9.0 : 1.0; };
+  const SampleSet samples = weigh_by_density(even, top_heavy, context).samples;
+  const auto seeds = random_start(samples, 1000, 5);
+  ASSERT_EQ(seeds.size(), 1000u);
+  const auto above = std::count_if(seeds.begin(), seeds.end(), [](const Vec3& s) { return s.z > 0; });
+  EXPECT_NEAR(static_cast<double>(above), 900, 5);
 }
 
 TEST(Starts, MoreSeedsThanSamplesAreStillGiven) {

@@ -145,6 +145,9 @@ inline void expect_well_formed(const SampleSet& set) {
   EXPECT_LE(against, n / 1000);
   EXPECT_EQ(weights, 0u);
   EXPECT_NEAR(set.total_area, area, 1e-6 * area);
+  if (set.even()) {
+    EXPECT_EQ(set.total_weight, set.total_area);
+  }
 }
 
 template <typename T>
@@ -157,12 +160,10 @@ inline void expect_same(const SampleSet& a, const SampleSet& b) {
     return u.begin == v.begin && u.end == v.end && u.brick == v.brick && u.axis_begin == v.axis_begin;
   };
   EXPECT_TRUE(std::equal(a.blocks.begin(), a.blocks.end(), b.blocks.begin(), b.blocks.end(), same_block));
-  EXPECT_TRUE(same_bytes(a.x, b.x) && same_bytes(a.y, b.y) && same_bytes(a.z, b.z));
-  EXPECT_TRUE(same_bytes(a.area, b.area));
-  EXPECT_TRUE(same_bytes(a.normal, b.normal));
-  EXPECT_TRUE(same_bytes(a.edge, b.edge));
-  EXPECT_TRUE(same_bytes(a.source, b.source));
+  std::size_t columns = 0;
+  for_each_column([&](const auto& u, const auto& v) { EXPECT_TRUE(same_bytes(u, v)) << "column " << columns++; }, a, b);
   EXPECT_EQ(a.total_area, b.total_area);
+  EXPECT_EQ(a.total_weight, b.total_weight);
   EXPECT_EQ(a.disagreements, b.disagreements);
   EXPECT_EQ(a.unresolved, b.unresolved);
 }

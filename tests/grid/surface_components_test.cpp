@@ -1,6 +1,7 @@
 #include "grid/surface_components.h"
 
 #include "connect/connect_testing.h"
+#include "grid/density.h"
 
 namespace evenmesh {
 namespace {
@@ -37,12 +38,12 @@ TEST(SurfaceComponents, NumbersPartsByFirstSampleAndAddsUpTheirArea) {
   for (std::size_t p = 0; p < area.size(); ++p) EXPECT_NEAR(parts.area[p], area[p], 1e-9);
 }
 
-TEST(DropDust, RemovesSpecksAndKeepsTheRestInOrder) {
+TEST(DropSmallComponents, RemovesThemAndKeepsTheRestInOrder) {
   evenmesh::ExecutionContext context(1);
-  SampleSet samples = sampled(ball_with_small_components(), 60);
-  const std::size_t before = samples.size();
-  EXPECT_EQ(drop_small_components(samples, 0.5, context), 3u);
-  EXPECT_LT(samples.size(), before);
+  const SampleSet before = sampled(ball_with_small_components(), 60);
+  const auto [samples, dropped] = drop_small_components(before, 0.5, context);
+  EXPECT_EQ(dropped, 3u);
+  EXPECT_LT(samples.size(), before.size());
   expect_well_formed(samples);
   expect_one_sign_grid(samples);
   EXPECT_NEAR(samples.total_area, 4 * 3.14159265, 0.2);
@@ -55,21 +56,49 @@ TEST(DropDust, RemovesSpecksAndKeepsTheRestInOrder) {
   EXPECT_TRUE(is_closed_manifold(complex.triangles, complex.labels));
 }
 
-TEST(DropDust, LeavesSurfacesWithoutSpecksAlone) {
+TEST(DropSmallComponents, LeavesSurfacesWithoutAnyAlone) {
   evenmesh::ExecutionContext context(1);
-  SampleSet samples = sampled(ball_with_small_components(), 60);
-  const SampleSet before = samples;
-  EXPECT_EQ(drop_small_components(samples, 1e-6, context), 0u);
-  expect_same(samples, before);
+  const SampleSet before = sampled(ball_with_small_components(), 60);
+  const RemainingSurface rest = drop_small_components(before, 1e-6, context);
+  EXPECT_EQ(rest.dropped, 0u);
+  expect_same(rest.samples, before);
 }
 
-TEST(DropDust, MayDropEverything) {
+TEST(DropSmallComponents, MayDropEverything) {
   evenmesh::ExecutionContext context(1);
-  SampleSet samples = sampled(make_icosphere(1), 12);
-  EXPECT_EQ(drop_small_components(samples, 100, context), 1u);
+  const auto [samples, dropped] = drop_small_components(sampled(make_icosphere(1), 12), 100, context);
+  EXPECT_EQ(dropped, 1u);
   EXPECT_EQ(samples.size(), 0u);
   EXPECT_TRUE(samples.blocks.empty());
   EXPECT_NEAR(samples.total_area, 0, 1e-4);
+}
+
+/// Two balls of radius 1 and 0.3 (areas 12.6 and 1.1), with so many times the density on the small one.
+SampleSet large_and_small_ball(double density_on_small) {
+  evenmesh::ExecutionContext context(1);
+  const SampleSet even = sampled(merged(make_icosphere(4), translated(make_icosphere(3, 0.3), {1.6, 0, 0})), 60);
+  return weigh_by_density(
+             even, [&](const Vec3& p) { return p.x > 1.2 ? density_on_small : 1.0; }, context)
+      .samples;
+}
+
+TEST(DropSmallComponents, LowDensityMakesNoComponentSmall) {
+  evenmesh::ExecutionContext context(1);
+  const SampleSet samples = large_and_small_ball(0.1);
+  double weight = 0;
+  for (const SampleBlock& block : samples.blocks)
+    for (std::uint32_t i = block.begin; i < block.end; ++i)
+      if (position(samples, block, i).x > 1.2) weight += samples.weight[i];
+  ASSERT_LT(weight, 0.5) << "by its weight the small ball would go";
+  EXPECT_EQ(drop_small_components(samples, 0.5, context).dropped, 0u);
+  EXPECT_EQ(drop_small_components(samples, 1.5, context).dropped, 1u);
+}
+
+TEST(DropSmallComponents, HighDensityMakesASmallComponentWorthIt) {
+  evenmesh::ExecutionContext context(1);
+  const RemainingSurface rest = drop_small_components(large_and_small_ball(10), 1.5, context);
+  EXPECT_EQ(rest.dropped, 0u) << "four cells and more are wanted there";
+  EXPECT_EQ(drop_small_components(large_and_small_ball(1), 1.5, context).dropped, 1u);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "evenmesh/shape.h"
+#include "grid/density.h"
 #include "grid/surface_components.h"
 #include "sample/sample.h"
 #include "topology/ambiguous_faces.h"
@@ -43,6 +44,22 @@ TEST(Balls, UnionHasTheCrossingsOfTheUnitedSolid) {
       EXPECT_NEAR(made.z[i], wanted.z[i], 1e-4);
     }
   }
+}
+
+TEST(Balls, WeighWhatTheSurfaceAroundThemDoes) {
+  evenmesh::ExecutionContext context(2);
+  const Density density = [](const Vec3& p) { return p.x > 0 ? 3.0 : 1.0; };
+  const SampleSet ball = weigh_by_density(sampled("r - 1", 80), density, context).samples;
+  const SampleSet made = unite_balls(ball, std::vector<Ball>{{{1, 0, 0}, 0.3}, {{-1, 0, 0}, 0.3}}, context);
+  ASSERT_EQ(made.weight.size(), made.size());
+  double total = 0;
+  for (const SampleBlock& b : made.blocks)
+    for (std::uint32_t i = b.begin; i < b.end; ++i) {
+      const double x = made.block_center(b).x + made.x[i], n = (x > 0 ? 3.0 : 1.0) / 2;
+      ASSERT_NEAR(made.weight[i], made.area[i] * n * n, 0.02f * made.weight[i] + 1e-12f);
+      total += made.weight[i];
+    }
+  EXPECT_NEAR(made.total_weight, total, 1e-6 * total);
 }
 
 TEST(Balls, TheGridsBorderStaysOutside) {
