@@ -32,7 +32,7 @@ const Surface& surface(std::size_t count) {
                          static_cast<std::size_t>(64 * std::sqrt(100.0 * static_cast<double>(count) / presampled))));
     ExecutionContext& context = ExecutionContext::silent();
     CellEvaluator evaluator(it->second.samples, context);
-    it->second.seeds = relax_seeds(evaluator, count, {}, context).seeds;
+    it->second.seeds = relax_seeds(evaluator, count, {}, context).seeds.positions;
   }
   return it->second;
 }

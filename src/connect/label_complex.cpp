@@ -290,8 +290,8 @@ class Splitter {
 
 }  // namespace
 
-LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
-                            ExecutionContext& context, std::size_t fixed) {
+LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, const Seeds& seeds,
+                            ExecutionContext& context) {
   LabelComplex result;
   Complex complex(samples, labels, seeds.size(), context);
   complex.link();
@@ -299,9 +299,9 @@ LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>
   std::vector<Index> piece_count(seeds.size(), 0);
   for (const Index root : complex.roots()) ++piece_count[labels[root]];
   Splitter(samples, labels, complex, result)
-      .split(piece_count, samples.total_area / static_cast<double>(seeds.size()), seeds.first(fixed));
+      .split(piece_count, samples.total_area / static_cast<double>(seeds.size()), seeds.fixed_positions());
 
-  std::vector<Vec3> positions(seeds.begin(), seeds.end());
+  std::vector<Vec3> positions = seeds.positions;
   for (const CellComponent& piece : result.pieces) positions.push_back(piece.centroid);
   const bool open = std::find(labels.begin(), labels.end(), no_label) != labels.end();
   const DualMesh dual = triangulate_polygons(complex.polygons(), labels, positions, open);

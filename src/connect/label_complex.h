@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "grid/sample_set.h"
+#include "grid/seeds.h"
 
 namespace evenmesh {
 
@@ -39,13 +40,13 @@ struct LabelComplex {
 ///
 /// Each crossing of a grid edge is one quad of the closed surface between inside and outside points; quads around a
 /// grid cube's loop of crossings meet in a corner. Three or more labels around a corner make a dual polygon. A label
-/// whose quads are not connected is split, and its largest piece keeps it, or the one nearest to the seed for the first
-/// `held` labels, whose seeds do not move; a piece smaller than a tenth of a mean cell goes to a neighbour.
+/// whose quads are not connected is split, and its largest piece keeps it, or the one nearest to the seed where that is
+/// fixed; a piece smaller than a tenth of a mean cell goes to a neighbour.
 ///
 /// Guarantee: without defects the triangles are a closed, oriented two-manifold with the topology of the sampled solid.
 /// Where samples have no label the surface has a boundary; several fans of triangles may then meet in one vertex there.
 /// Same bits for any number of threads. Cost: about 60 ns per sample and core.
-LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, std::span<const Vec3> seeds,
-                            ExecutionContext& context, std::size_t fixed = 0);
+LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, const Seeds& seeds,
+                            ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -88,9 +88,10 @@ void limit_steps(Vectors& steps, double limit) {
 /// Steps downhill until they are short, or evaluations are used up.
 class Descent {
  public:
-  Descent(CellEvaluator& evaluator, Vectors& seeds, const OptimizeOptions& options, ExecutionContext& context)
+  Descent(CellEvaluator& evaluator, Seeds& seeds, const OptimizeOptions& options, ExecutionContext& context)
       : evaluator_(evaluator),
-        seeds_(seeds),
+        seeds_(seeds.positions),
+        fixed_(seeds.fixed.size()),
         options_(options),
         context_(context),
         area_(evaluator.samples().total_area),
@@ -128,7 +129,7 @@ class Descent {
     result_.ratios.push_back(energy_ratio(out.energy, count(), area_));
   }
   void find_gradient(const CellSums& sums, Vectors& gradient) const {
-    algebra_.each(count(), [&](std::size_t i) { gradient[i] = i < options_.fixed ? Vec3{} : -2.0 * sums.moment[i]; });
+    algebra_.each(count(), [&](std::size_t i) { gradient[i] = i < fixed_ ? Vec3{} : -2.0 * sums.moment[i]; });
   }
 
   /// @return its product with the gradient
@@ -173,6 +174,7 @@ class Descent {
 
   CellEvaluator& evaluator_;
   Vectors& seeds_;
+  std::size_t fixed_;  ///< of them, the first ones
   const OptimizeOptions& options_;
   ExecutionContext& context_;
   const double area_;
@@ -186,7 +188,7 @@ class Descent {
 
 }  // namespace
 
-OptimizeResult optimize(CellEvaluator& evaluator, std::vector<Vec3>& seeds, const OptimizeOptions& options,
+OptimizeResult optimize(CellEvaluator& evaluator, Seeds& seeds, const OptimizeOptions& options,
                         ExecutionContext& context) {
   if (options.evaluations == 0) return {};
   return Descent(evaluator, seeds, options, context).run();

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "cvt/cells.h"
+#include "grid/seeds.h"
 
 namespace evenmesh {
 
@@ -11,7 +12,6 @@ struct OptimizeOptions {
   bool lloyd = false;            ///< Lloyd's iteration instead of L-BFGS
   std::size_t evaluations = 50;  ///< of the energy, at most
   double tolerance = 1e-4;       ///< stop when the mean step is below this share of the seed spacing √(A/k)
-  std::size_t fixed = 0;         ///< so many seeds, the first ones, stay where they are
 };
 
 struct OptimizeResult {
@@ -19,12 +19,12 @@ struct OptimizeResult {
   std::vector<double> ratios;  ///< energy ratio of every evaluation
 };
 
-/// Minimizes F over the positions of `seeds`; they may leave the surface a little (RCVT).
+/// Minimizes F over the positions of the free seeds; they may leave the surface a little (RCVT).
 ///
 /// L-BFGS (Liu et al., On centroidal Voronoi tessellation, ToG 2009) with history 5, preconditioned by 1/(2 m_i), so
 /// that its first step is Lloyd's; backtracking line search; Lloyd's step where the direction does not descend. Cost:
 /// `evaluations` × CellEvaluator::evaluate. Same bits for any number of threads.
-OptimizeResult optimize(CellEvaluator& evaluator, std::vector<Vec3>& seeds, const OptimizeOptions& options,
+OptimizeResult optimize(CellEvaluator& evaluator, Seeds& seeds, const OptimizeOptions& options,
                         ExecutionContext& context);
 
 }  // namespace evenmesh

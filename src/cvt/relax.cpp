@@ -96,22 +96,22 @@ class Balance {
     seeds_ = options_.start == SeedStart::random ? random_start(samples, n, options_.seed)
                                                  : blue_noise_start(samples, n, options_.seed);
     hold(n);
-    adjust_count(pyramid_.for_seeds(n), seeds_, n, options_.seed + 4, context_, fixed_);
+    adjust_count(pyramid_.for_seeds(n), seeds_, n, options_.seed + 4, context_);
   }
 
   /// Puts those seeds first that are to be held among n; not on coarse levels where they would leave no room for
   /// others.
   void hold(std::size_t n) {
     if (!options_.fixed) return;
-    std::vector<Vec3> fixed = options_.fixed(n);
-    if (2 * fixed.size() > n && n != count_) fixed.clear();
+    Seeds fixed = options_.fixed(n);
+    if (2 * fixed.size() > n && n != count_) fixed = {};
     const double edge = std::sqrt(2 * pyramid_.finest().samples().total_area / (std::numbers::sqrt3 * double(n)));
-    seeds_ = fixed_and_others(fixed, seeds_, fixed_, clear_distance * edge);
-    fixed_ = fixed.size();
+    const std::vector<Vec3> others(seeds_.free_positions().begin(), seeds_.free_positions().end());
+    seeds_ = fixed_and_others(std::move(fixed), others, clear_distance * edge);
   }
 
-  double relax(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t evaluations) {
-    const auto result = optimize(evaluator, seeds, {options_.lloyd, evaluations, options_.tolerance, fixed_}, context_);
+  double relax(CellEvaluator& evaluator, Seeds& seeds, std::size_t evaluations) {
+    const auto result = optimize(evaluator, seeds, {options_.lloyd, evaluations, options_.tolerance}, context_);
     ratios_.insert(ratios_.end(), result.ratios.begin(), result.ratios.end());
     return result.energy;
   }
@@ -123,13 +123,13 @@ class Balance {
     const auto rounds = static_cast<double>(options_.annealing_rounds);
     for (double round = 0; round < rounds; ++round) {
       const double amplitude = 0.25 * spacing * (1 - round / rounds);
-      std::vector<Vec3> shaken = seeds_;
-      for (std::size_t s = fixed_; s < shaken.size(); ++s)
-        shaken[s] += amplitude * Vec3{random.gaussian(), random.gaussian(), random.gaussian()};
+      Seeds shaken = seeds_;
+      for (std::size_t s = seeds_.fixed.size(); s < shaken.size(); ++s)
+        shaken.positions[s] += amplitude * Vec3{random.gaussian(), random.gaussian(), random.gaussian()};
       const double energy = relax(evaluator, shaken, evaluations(true));
       if (energy < best) {
         best = energy;
-        seeds_.swap(shaken);
+        std::swap(seeds_, shaken);
       }
     }
   }
@@ -140,18 +140,18 @@ class Balance {
   void split(std::size_t target) {
     CellEvaluator& evaluator =
         pyramid_.for_seeds(target);  // four times as many samples as balancing needs: sees short borders
-    std::vector<Vec3> middles = neighbour_middles(evaluator, seeds_, context_);
+    std::vector<Vec3> middles = neighbour_middles(evaluator, seeds_.positions, context_);
     const auto now = static_cast<std::int64_t>(seeds_.size()), after = now + static_cast<std::int64_t>(middles.size());
     const std::int64_t change = (static_cast<std::int64_t>(target) - after) / 4;
     if (std::abs(change) * 100 > now) {
       adjust_count(evaluator, seeds_, static_cast<std::size_t>(std::max<std::int64_t>(4, now + change)),
-                   options_.seed + 2, context_, fixed_);
+                   options_.seed + 2, context_);
       relax(pyramid_.for_seeds(seeds_.size()), seeds_, evaluations(false) / 3);
-      middles = neighbour_middles(evaluator, seeds_, context_);
+      middles = neighbour_middles(evaluator, seeds_.positions, context_);
     }
-    seeds_.insert(seeds_.end(), middles.begin(), middles.end());
+    seeds_.positions.insert(seeds_.positions.end(), middles.begin(), middles.end());
     hold(target);
-    adjust_count(evaluator, seeds_, target, options_.seed + 3, context_, fixed_);
+    adjust_count(evaluator, seeds_, target, options_.seed + 3, context_);
   }
 
   std::size_t count_;
@@ -159,8 +159,7 @@ class Balance {
   ExecutionContext& context_;
   std::size_t levels_;
   Pyramid pyramid_;
-  std::vector<Vec3> seeds_;
-  std::size_t fixed_ = 0;  ///< of them, the first ones
+  Seeds seeds_;
   std::vector<double> ratios_;
 };
 

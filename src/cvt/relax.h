@@ -19,11 +19,11 @@ struct RelaxOptions {
   double tolerance = 1e-4;                 ///< see OptimizeOptions
   std::uint64_t seed = 1;
   /// Seeds that stay where they are, when there are so many altogether; none: all move.
-  std::function<std::vector<Vec3>(std::size_t count)> fixed{};
+  std::function<Seeds(std::size_t count)> fixed{};
 };
 
 struct RelaxResult {
-  std::vector<Vec3> seeds;     ///< those that are held come first
+  Seeds seeds;
   std::vector<double> ratios;  ///< energy ratio of every evaluation, all levels in turn
   double energy_ratio = 0;     ///< of the seeds returned, on the samples given
 };

@@ -157,8 +157,9 @@ std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<
   return middles;
 }
 
-void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed,
-                  ExecutionContext& context, std::size_t fixed) {
+void adjust_count(CellEvaluator& evaluator, Seeds& all, std::size_t count, std::uint64_t seed,
+                  ExecutionContext& context) {
+  std::vector<Vec3>& seeds = all.positions;
   context.throw_if_cancelled();
   if (seeds.size() == count) return;
   const SampleSet& samples = evaluator.samples();
@@ -167,7 +168,7 @@ void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_
   std::vector<double> share(seeds.size(), 0);
   for (std::size_t i = 0; i < labels.size(); ++i) share[labels[i]] += samples.share(i);
   const bool remove = seeds.size() > count;
-  const std::size_t first = remove ? std::min(fixed, count) : 0;
+  const std::size_t first = remove ? std::min(all.fixed.size(), count) : 0;
   std::vector<std::uint32_t> order(seeds.size() - first);
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(first + i);
   std::sort(order.begin(), order.end(), [&](auto a, auto b) {
@@ -213,16 +214,15 @@ void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_
   seeds.insert(seeds.end(), rest.begin(), rest.end());
 }
 
-std::vector<Vec3> fixed_and_others(std::span<const Vec3> fixed, const std::vector<Vec3>& seeds, std::size_t first,
-                                   double reach) {
-  const PointHash near(fixed, reach);
+Seeds fixed_and_others(Seeds fixed, std::span<const Vec3> others, double reach) {
+  const std::vector<Vec3> given = fixed.positions;
+  const PointHash near(given, reach);
   const auto is_near = [&](const Vec3& p) {
-    return near.near(p, reach, [&](std::uint32_t h) { return squared_norm(fixed[h] - p) < reach * reach; });
+    return near.near(p, reach, [&](std::uint32_t h) { return squared_norm(given[h] - p) < reach * reach; });
   };
-  std::vector<Vec3> all(fixed.begin(), fixed.end());
-  for (std::size_t s = first; s < seeds.size(); ++s)
-    if (!is_near(seeds[s])) all.push_back(seeds[s]);
-  return all;
+  for (const Vec3& p : others)
+    if (!is_near(p)) fixed.positions.push_back(p);
+  return fixed;
 }
 
 }  // namespace evenmesh

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cvt/cells.h"
+#include "grid/seeds.h"
 
 namespace evenmesh {
 
@@ -26,13 +27,13 @@ std::vector<Vec3> neighbour_middles(CellEvaluator& evaluator, const std::vector<
                                     ExecutionContext& context);
 
 /// Adds seeds at random samples of the cells with the largest share (their area where all is even), or removes the
-/// seeds of those with the smallest, until there are exactly `count`. The first `fixed` stay. Seeds that stay keep
+/// seeds of those with the smallest, until there are exactly `count`. Fixed ones stay. Seeds that stay keep
 /// their order; balance them afterwards.
-void adjust_count(CellEvaluator& evaluator, std::vector<Vec3>& seeds, std::size_t count, std::uint64_t seed,
-                  ExecutionContext& context, std::size_t fixed = 0);
+/// @pre  count ≥ the number of fixed ones
+void adjust_count(CellEvaluator& evaluator, Seeds& seeds, std::size_t count, std::uint64_t seed,
+                  ExecutionContext& context);
 
-/// `fixed`, followed by those seeds, from index `first` on, that are not nearer than `reach` to one of them.
-std::vector<Vec3> fixed_and_others(std::span<const Vec3> fixed, const std::vector<Vec3>& seeds, std::size_t first,
-                                   double reach);
+/// `fixed`, all of which are, followed by those others that are not nearer than `reach` to one of them.
+Seeds fixed_and_others(Seeds fixed, std::span<const Vec3> others, double reach);
 
 }  // namespace evenmesh

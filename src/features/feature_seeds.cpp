@@ -92,28 +92,28 @@ std::uint32_t segments_of(const FeatureCurve& curve, double edge) {
 
 }  // namespace
 
-std::uint32_t FeatureSeeds::curve_of(std::size_t place) const {
-  return static_cast<std::uint32_t>(std::upper_bound(first.begin(), first.end(), place) - first.begin() - 1);
-}
-
 bool follows(const FeatureCurve& curve, double edge) {
   return deviation(curve, segments_of(curve, edge)) <= feature_deviation * edge;
 }
 
 FeatureSeeds place_feature_seeds(const FeatureCurves& features, double edge) {
   FeatureSeeds seeds;
-  seeds.places = features.corners;
-  seeds.corners = features.corners.size();
+  const auto place = [&](const Vec3& p, Attachment::Kind kind, std::uint32_t index) {
+    seeds.seeds.positions.push_back(p);
+    seeds.seeds.fixed.push_back({kind, index});
+  };
+  for (std::uint32_t c = 0; c < features.corners.size(); ++c) place(features.corners[c], Attachment::Kind::corner, c);
   std::set<std::pair<std::uint32_t, std::uint32_t>> joined;  // corners with an edge between them
   for (std::uint32_t c = 0; c < features.curves.size(); ++c) {
     const FeatureCurve& curve = features.curves[c];
     const bool closed = curve.from == FeatureCurve::none;
     std::uint32_t n = segments_of(curve, edge);
     if (n == 1 && !joined.insert(std::minmax(curve.from, curve.to)).second) n = 2;
-    const auto first = static_cast<std::uint32_t>(seeds.places.size());
+    const auto first = static_cast<std::uint32_t>(seeds.size());
     seeds.first.push_back(first);
     seeds.segments.push_back(n);
-    for (std::uint32_t k = closed ? 0 : 1; k < n; ++k) seeds.places.push_back(point_at(curve, curve.length() * k / n));
+    for (std::uint32_t k = closed ? 0 : 1; k < n; ++k)
+      place(point_at(curve, curve.length() * k / n), Attachment::Kind::curve, c);
     for (std::uint32_t k = 0; k < n; ++k) {
       const double at = curve.length() / n;
       seeds.edges.push_back({seed_at(features, seeds, c, at * k), seed_at(features, seeds, c, at * (k + 1))});

@@ -6,18 +6,17 @@
 #include <vector>
 
 #include "features/feature_curves.h"
+#include "grid/seeds.h"
 
 namespace evenmesh {
 
 /// Seeds on every corner and evenly spaced along every chain. As labels they are the first ones.
 struct FeatureSeeds {
-  std::vector<Vec3> places;                    ///< the corners first, then chain after chain
-  std::size_t corners = 0;                     ///< of the places
+  Seeds seeds;                                 ///< all of them fixed; the corners first, then curve after curve
   std::vector<std::uint32_t> first, segments;  ///< by chain: its first seed between the ends; pieces it is cut into
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< neighbours along a chain
 
-  /// The chain of a place that is no corner.
-  std::uint32_t curve_of(std::size_t place) const;
+  std::size_t size() const { return seeds.size(); }
 };
 
 /// Whether the seeds that place_feature_seeds() would put on a chain follow it: chords within `feature_deviation`.

@@ -76,18 +76,19 @@ void find_boundary(const Tessellation& cells, const std::vector<char>& on_bounda
 
 /// Vertices of seeds on feature curves go there, except where a ball has covered the curve.
 void constrain(const Tessellation& cells, Draft& draft) {
-  const FeatureSeeds& seeds = cells.fixed;
-  if (seeds.places.empty() && cells.features.apexes.empty()) return;
+  const Seeds& fixed = cells.feature_seeds.seeds;
+  if (fixed.size() == 0 && cells.features.apexes.empty()) return;
   VertexConstraints& constraints = draft.constraints;
   constraints.curve.assign(draft.mesh.vertices.size(), VertexConstraints::free);
-  for (std::size_t l = 0; l < seeds.places.size(); ++l) {
-    const Vec3& place = seeds.places[l];
+  for (std::size_t l = 0; l < fixed.size(); ++l) {
+    const Vec3& place = fixed.positions[l];
     const std::uint32_t v = draft.vertex_of_label[l];
     if (v == Draft::none || cells.balls.outside(place) != place) continue;
-    constraints.curve[v] = l < seeds.corners ? VertexConstraints::corner : seeds.curve_of(l);
+    const Attachment& on = fixed.fixed[l];
+    constraints.curve[v] = on.kind == Attachment::Kind::corner ? VertexConstraints::corner : on.index;
     draft.mesh.vertices[v] = place;
   }
-  for (const auto& [a, b] : seeds.edges) {
+  for (const auto& [a, b] : cells.feature_seeds.edges) {
     const auto [v, w] = std::minmax(draft.vertex_of_label[a], draft.vertex_of_label[b]);
     if (w != Draft::none) constraints.edges.push_back({v, w});
   }

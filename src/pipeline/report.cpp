@@ -43,7 +43,7 @@ void add_tessellation(const Tessellation& cells, Report& report, ExecutionContex
   report.energies = cells.energies;
   report.evaluations = cells.energies.size();
   report.energy_ratio = cells.energy_ratio;
-  report.crease_vertices = cells.fixed.places.size();
+  report.crease_vertices = cells.feature_seeds.size();
   for (const FeatureCurve& curve : cells.features.curves)
     for (std::size_t p = 1; p < curve.points.size(); ++p)
       report.crease_length += norm(curve.points[p] - curve.points[p - 1]);

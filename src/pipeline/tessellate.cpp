@@ -38,20 +38,20 @@ class Progress {
 };
 
 void insert(Tessellation& cells, const std::vector<Vec3>& seeds) {
-  cells.seeds.insert(cells.seeds.end(), seeds.begin(), seeds.end());
+  cells.seeds.positions.insert(cells.seeds.positions.end(), seeds.begin(), seeds.end());
   cells.inserted_seeds += seeds.size();
 }
 
 /// Other seeds where some do not get along, however large the balls are.
 void perturb(Tessellator& state, std::uint64_t round) {
-  std::vector<Vec3>& seeds = state.result.seeds;
+  Seeds& seeds = state.result.seeds;
   std::vector<char> bad(seeds.size(), 0);
   for (const auto& [a, b] : state.defects()) bad[std::max(a, b)] = 1;
   const std::size_t given = state.given();
   std::vector<Vec3> kept;
   for (std::size_t s = 0; s < given; ++s)
-    if (!bad[s] || s < state.fixed()) kept.push_back(seeds[s]);
-  seeds = std::move(kept);
+    if (!bad[s] || seeds.is_fixed(s)) kept.push_back(seeds.positions[s]);
+  seeds.positions = std::move(kept);
   state.timer.stage("relax", 0, [&] { state.adjust_count(given, round); });
   state.relax();
   state.connect();
@@ -61,7 +61,7 @@ void perturb(Tessellator& state, std::uint64_t round) {
 void simplify_once(Tessellator& state, RegularizationBalls& list, int round) {
   Tessellation& cells = state.result;
   std::vector<BadEdge> edges;
-  for (const auto& [a, b] : state.defects()) edges.push_back({cells.seeds[a], cells.seeds[b]});
+  for (const auto& [a, b] : state.defects()) edges.push_back({cells.seeds.positions[a], cells.seeds.positions[b]});
   const std::vector<std::uint32_t> changed = list.next_round(edges);
   state.context.log(fmt::format("simplify {}: {} places, {} seeds, {} balls, {} new or grown", round, edges.size(),
                                 cells.seeds.size(), list.balls().size(), changed.size()));

@@ -15,8 +15,8 @@ namespace evenmesh {
 struct Tessellation {
   Sampling sampling;                  ///< small components may have gone, and balls been united with the solid
   FeatureCurves features;             ///< those that are followed
-  FeatureSeeds fixed;                 ///< the first seeds, which have not moved
-  std::vector<Vec3> seeds;            ///< one per label
+  FeatureSeeds feature_seeds;         ///< the fixed ones among the seeds, and which of them are neighbours
+  Seeds seeds;                        ///< one per label
   std::vector<std::uint32_t> labels;  ///< one per sample
   LabelComplex complex;               ///< triangles of labels
   bool two_manifold = false;          ///< all cells fit together

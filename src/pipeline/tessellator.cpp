@@ -69,7 +69,7 @@ void Tessellator::find_features() {
   const double edge = result.sampling.sizing.mean();
   timer.stage("features", 0.01, [&] {
     result.features = find_feature_curves(result.sampling.samples, *options.feature_angle, edge, context);
-    result.fixed = place_feature_seeds(result.features, edge);
+    result.feature_seeds = place_feature_seeds(result.features, edge);
   });
   context.log(fmt::format("features: {} curves, {} corners, {} seeds", result.features.curves.size(),
                           result.features.corners.size(), fixed()));
@@ -79,7 +79,7 @@ void Tessellator::find_features() {
     result.sampling.findings.push_back(
         make_finding(FindingCode::features_not_followed, {{"count", static_cast<double>(count)}, {"reason", reason}}));
   result.features = {};
-  result.fixed = {};
+  result.feature_seeds = {};
 }
 
 void Tessellator::relax_all(std::size_t count) {
@@ -88,9 +88,9 @@ void Tessellator::relax_all(std::size_t count) {
     if (!closed()) relax.effort *= sheet_effort;
     if (fixed() > 0)
       relax.fixed = [&](std::size_t seeds) {
-        if (2 * seeds > count) return result.fixed.places;
+        if (2 * seeds > count) return result.feature_seeds.seeds;
         const double edge = edge_length_of(result.sampling.samples.total_area, double(seeds));
-        return place_feature_seeds(result.features, edge).places;
+        return place_feature_seeds(result.features, edge).seeds;
       };
     RelaxResult relaxed = relax_seeds(*evaluator_, count, relax, context);
     result.seeds = std::move(relaxed.seeds);
@@ -102,8 +102,8 @@ void Tessellator::relax_all(std::size_t count) {
 void Tessellator::relax(std::size_t effort) {
   timer.stage("relax", 0, [&] {
     const bool lloyd = options.optimizer == Optimizer::lloyd;
-    const auto relaxed = optimize(*evaluator_, result.seeds,
-                                  {lloyd, effort * relaxing_evaluations, options.tolerance, fixed()}, context);
+    const auto relaxed =
+        optimize(*evaluator_, result.seeds, {lloyd, effort * relaxing_evaluations, options.tolerance}, context);
     if (closed()) result.energies.insert(result.energies.end(), relaxed.ratios.begin(), relaxed.ratios.end());
   });
 }
@@ -117,15 +117,15 @@ void Tessellator::connect() {
       connect_solid();
     else
       connect_sheets();
-    for (const CellComponent& piece : result.complex.pieces) result.seeds.push_back(piece.centroid);
+    for (const CellComponent& piece : result.complex.pieces) result.seeds.positions.push_back(piece.centroid);
   });
 }
 
 void Tessellator::connect_solid() {
   const SampleSet& samples = result.sampling.samples;
   if (options.connect == Connect::flood) flood_labels(samples, result.labels, result.seeds, context);
-  if (fixed() > 0) constrain_labels(samples, result.features, result.fixed, result.labels, context);
-  result.complex = connect_labels(samples, result.labels, result.seeds, context, fixed());
+  if (fixed() > 0) constrain_labels(samples, result.features, result.feature_seeds, result.labels, context);
+  result.complex = connect_labels(samples, result.labels, result.seeds, context);
 }
 
 /// Along both sides of the shell, of which one has labels.
@@ -153,7 +153,7 @@ void Tessellator::connect_as_fragments() {
 }
 
 void Tessellator::forget_split_cells() {
-  result.seeds.resize(given());
+  result.seeds.positions.resize(given());
   result.complex.pieces.clear();
 }
 
@@ -213,14 +213,14 @@ void Tessellator::refill_idle_seeds() {
     for (const std::uint32_t l : result.labels) owns[l] = 1;
     std::size_t kept = 0;
     for (std::size_t s = 0; s < result.seeds.size(); ++s)
-      if (owns[s] || s < fixed()) result.seeds[kept++] = result.seeds[s];
-    result.seeds.resize(kept);
+      if (owns[s] || result.seeds.is_fixed(s)) result.seeds.positions[kept++] = result.seeds.positions[s];
+    result.seeds.positions.resize(kept);
     if (kept < count) adjust_count(count, 7);
   });
 }
 
 void Tessellator::adjust_count(std::size_t count, std::uint64_t salt) {
-  evenmesh::adjust_count(*evaluator_, result.seeds, count, options.seed + salt, context, fixed());
+  evenmesh::adjust_count(*evaluator_, result.seeds, count, options.seed + salt, context);
 }
 
 void Tessellator::adjust_and_relax(std::size_t count) {
@@ -245,10 +245,11 @@ void Tessellator::unite_changed(std::span<const std::uint32_t> changed) {
     const std::size_t count = std::min(result.seeds.size(), wanted());
     result.sampling.samples = unite_balls(result.sampling.samples, balls, context);
     renew_evaluator();
-    std::vector<Vec3> others(result.seeds.begin() + static_cast<std::ptrdiff_t>(fixed()), result.seeds.end());
+    std::vector<Vec3>& seeds = result.seeds.positions;
+    std::vector<Vec3> others(result.seeds.free_positions().begin(), result.seeds.free_positions().end());
     clear_around(others, result.balls, changed, edge());
-    result.seeds.resize(fixed());
-    result.seeds.insert(result.seeds.end(), others.begin(), others.end());
+    seeds.resize(result.seeds.fixed.size());
+    seeds.insert(seeds.end(), others.begin(), others.end());
     if (result.seeds.size() < count) adjust_count(count, 11);
     ++result.regularization_rounds;
   });
@@ -257,22 +258,22 @@ void Tessellator::unite_changed(std::span<const std::uint32_t> changed) {
 void Tessellator::release_features() {
   std::vector<char> bad(result.seeds.size(), 0);
   for (const auto& [a, b] : defects()) bad[a] = bad[b] = 1;
-  const FeatureSeeds old = std::move(result.fixed);
+  const Seeds old = std::move(result.feature_seeds.seeds);
   std::vector<char> doomed(result.features.curves.size(), 0);
-  for (std::size_t s = old.corners; s < old.places.size(); ++s)
-    if (bad[s]) doomed[old.curve_of(s)] = 1;
+  for (std::size_t s = 0; s < old.size(); ++s)
+    if (bad[s] && old.fixed[s].kind == Attachment::Kind::curve) doomed[old.fixed[s].index] = 1;
   for (std::size_t c = 0; c < doomed.size(); ++c)
     for (const std::uint32_t corner : {result.features.curves[c].from, result.features.curves[c].to})
       if (corner != FeatureCurve::none && bad[corner]) doomed[c] = 1;
   result.features = without_curves(result.features, doomed);
-  result.fixed = place_feature_seeds(result.features, result.sampling.sizing.mean());
+  result.feature_seeds = place_feature_seeds(result.features, result.sampling.sizing.mean());
   forget_split_cells();
+  Seeds seeds = result.feature_seeds.seeds;
   std::set<std::array<double, 3>> stay;
-  for (const Vec3& p : result.fixed.places) stay.insert({p.x, p.y, p.z});
-  std::vector<Vec3> seeds = result.fixed.places;
+  for (const Vec3& p : seeds.positions) stay.insert({p.x, p.y, p.z});
   for (std::size_t s = 0; s < result.seeds.size(); ++s) {
-    const Vec3& p = result.seeds[s];
-    if (s >= old.places.size() || !stay.contains({p.x, p.y, p.z})) seeds.push_back(p);
+    const Vec3& p = result.seeds.positions[s];
+    if (s >= old.size() || !stay.contains({p.x, p.y, p.z})) seeds.positions.push_back(p);
   }
   result.seeds = std::move(seeds);
   connect();

@@ -44,7 +44,7 @@ class Tessellator {
 
   bool closed() const { return result.sampling.closed(); }
   std::size_t wanted() const { return result.sampling.plan.vertices; }
-  std::size_t fixed() const { return result.fixed.places.size(); }
+  std::size_t fixed() const { return result.feature_seeds.size(); }
   /// Seeds that are not those of split cells' pieces.
   std::size_t given() const { return result.seeds.size() - result.complex.pieces.size(); }
   /// Mean length of the mesh's edges, as many cells as there are now; model units.

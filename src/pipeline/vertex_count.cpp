@@ -23,7 +23,7 @@ void change_count(Tessellator& state, bool fewer, std::size_t change) {
   Tessellation& cells = state.result;
   state.timer.stage("relax", 0, [&] {
     if (fewer)
-      remove_common_cells(cells.sampling.samples, cells.seeds, cells.labels, change, state.fixed());
+      remove_common_cells(cells.sampling.samples, cells.seeds, cells.labels, change);
     else
       state.adjust_count(cells.seeds.size() + change, 13);
   });
@@ -33,7 +33,7 @@ void change_count(Tessellator& state, bool fewer, std::size_t change) {
     const TopologyRepair repair = state.plan_repair({}, {});
     if (!repair.changed.empty()) return;
     state.forget_split_cells();
-    cells.seeds.insert(cells.seeds.end(), repair.seeds.begin(), repair.seeds.end());
+    cells.seeds.positions.insert(cells.seeds.positions.end(), repair.seeds.begin(), repair.seeds.end());
     state.relax();
     state.connect();
   }

@@ -185,8 +185,9 @@ void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<co
   seeds = std::move(kept);
 }
 
-void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std::span<const std::uint32_t> labels,
-                         std::size_t count, std::size_t fixed) {
+void remove_common_cells(const SampleSet& samples, Seeds& all, std::span<const std::uint32_t> labels,
+                         std::size_t count) {
+  std::vector<Vec3>& seeds = all.positions;
   if (seeds.empty()) return;
   std::vector<double> share(seeds.size(), 0);
   for (std::size_t i = 0; i < labels.size(); ++i)
@@ -196,7 +197,7 @@ void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double median = *middle, apart = 1.6 * std::sqrt(median);
   std::vector<std::uint32_t> order;
-  for (auto s = static_cast<std::uint32_t>(fixed); s < seeds.size(); ++s)
+  for (auto s = static_cast<std::uint32_t>(all.fixed.size()); s < seeds.size(); ++s)
     if (share[s] >= 0.9 * median) order.push_back(s);
   std::sort(order.begin(), order.end(),
             [&](auto a, auto b) { return share[a] != share[b] ? share[a] < share[b] : a < b; });

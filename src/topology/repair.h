@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "grid/sample_set.h"
+#include "grid/seeds.h"
 #include "topology/balls.h"
 
 namespace evenmesh {
@@ -39,12 +40,11 @@ TopologyRepair plan_topology_repair(const SampleSet& samples, std::span<const st
 void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<const std::uint32_t> changed,
                   double edge);
 
-/// Removes up to `count` seeds of cells that are not smaller than most, none next to another: their neighbours can take
-/// the place over, while small cells are where the topology needs them. Removes fewer when there is no room for so
+/// Removes up to `count` free seeds of cells that are not smaller than most, none next to another: their neighbours can
+/// take the place over, while small cells are where the topology needs them. Removes fewer when there is no room for so
 /// many. The size that counts is a cell's share in the vertices, its area where all is even.
 /// @param labels  cells of the seeds; labels from seeds.size() on are those of pieces
-/// @param held  so many seeds, the first ones, stay
-void remove_common_cells(const SampleSet& samples, std::vector<Vec3>& seeds, std::span<const std::uint32_t> labels,
-                         std::size_t count, std::size_t fixed = 0);
+void remove_common_cells(const SampleSet& samples, Seeds& seeds, std::span<const std::uint32_t> labels,
+                         std::size_t count);
 
 }  // namespace evenmesh

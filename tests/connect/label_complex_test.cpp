@@ -237,7 +237,7 @@ TEST(LabelComplex, HeldSeedsKeepThePieceTheyLieOn) {
   }
   for (const std::size_t fixed : {0u, 1u}) {
     std::vector<std::uint32_t> now = labels;
-    const LabelComplex complex = connect_labels(samples, now, seeds, context, fixed);
+    const LabelComplex complex = connect_labels(samples, now, {seeds, std::vector<Attachment>(fixed)}, context);
     ASSERT_FALSE(complex.pieces.empty());
     for (std::size_t s = 0; s < now.size(); ++s) EXPECT_TRUE(!above(s) || (now[s] == 0) == (fixed == 1));
   }

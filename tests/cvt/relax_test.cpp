@@ -32,7 +32,8 @@ TEST(Balance, GivesTheCountFromEveryStart) {
         ASSERT_EQ(result.seeds.size(), count);
         EXPECT_GT(result.energy_ratio, 0);
         if (count < 100) continue;
-        for (const Vec3& s : result.seeds) ASSERT_TRUE(surface.closest(s, spacing_of(samples, count)).found());
+        for (const Vec3& s : result.seeds.positions)
+          ASSERT_TRUE(surface.closest(s, spacing_of(samples, count)).found());
       }
 }
 
@@ -61,7 +62,7 @@ TEST(Balance, SameBitsForAnyNumberOfThreads) {
     results.push_back(with_threads(context, [&] { return relax_seeds(evaluator, 1300, {.evaluations = 6}, context); }));
   }
   for (const RelaxResult& result : results) {
-    EXPECT_TRUE(same_bytes(result.seeds, results[0].seeds));
+    EXPECT_TRUE(same_bytes(result.seeds.positions, results[0].seeds.positions));
     EXPECT_TRUE(same_bytes(result.ratios, results[0].ratios));
   }
 }

@@ -77,13 +77,13 @@ TEST(Starts, AdjustCountMeetsAnyCount) {
   CellEvaluator evaluator(samples, context);
   const std::vector<Vec3> seeds = random_start(samples, 100, 3);
   for (const std::size_t count : {4u, 50u, 99u, 100u, 101u, 130u, 200u, 450u}) {
-    std::vector<Vec3> adjusted = seeds;
+    Seeds adjusted = seeds;
     adjust_count(evaluator, adjusted, count, 1, context);
     ASSERT_EQ(adjusted.size(), count);
     if (count >= 100) {
-      EXPECT_TRUE(std::equal(seeds.begin(), seeds.end(), adjusted.begin()));
+      EXPECT_TRUE(std::equal(seeds.begin(), seeds.end(), adjusted.positions.begin()));
     }
-    for (const Vec3& s : adjusted) EXPECT_TRUE(is_finite(s));
+    for (const Vec3& s : adjusted.positions) EXPECT_TRUE(is_finite(s));
   }
 }
 
@@ -94,7 +94,7 @@ TEST(Starts, AdjustCountMeetsTheCountWithEmptyCells) {
   std::vector<Vec3> seeds = random_start(samples, 50, 3);
   for (std::size_t i = 0; i < 50; ++i) seeds.push_back(seeds[i]);  // the twin of every seed owns nothing
   for (const std::size_t count : {60u, 101u, 150u, 180u, 260u}) {
-    std::vector<Vec3> adjusted = seeds;
+    Seeds adjusted = seeds;
     adjust_count(evaluator, adjusted, count, 1, context);
     EXPECT_EQ(adjusted.size(), count);
   }
@@ -107,7 +107,7 @@ TEST(Starts, AdjustCountHelpsTheHeaviestAndTakesTheLightest) {
   std::vector<Vec3> seeds = relaxed_seeds(samples, 100);
   const Vec3 crowded = seeds[10] + Vec3{0.01, 0.01, 0};
   seeds.push_back(crowded);
-  std::vector<Vec3> fewer = seeds;
+  Seeds fewer = seeds;
   adjust_count(evaluator, fewer, 100, 1, context);
   ASSERT_EQ(fewer.size(), 100u);
   CellSums before, after;

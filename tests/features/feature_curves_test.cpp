@@ -107,17 +107,18 @@ TEST(FeatureSeeds, AreEvenlySpacedAndNeighboursInTheDual) {
   const SampleSet samples = sampled_gallery("cube", 64);
   const FeatureCurves features = features_of(samples, 0.26);
   const FeatureSeeds seeds = place_feature_seeds(features, 0.26);
-  EXPECT_EQ(seeds.places.size(), 8u + 12 * 7);
+  EXPECT_EQ(seeds.seeds.positions.size(), 8u + 12 * 7);
   EXPECT_EQ(seeds.edges.size(), 12u * 8);
-  for (const auto& [a, b] : seeds.edges) EXPECT_NEAR(norm(seeds.places[a] - seeds.places[b]), 0.25, 1e-3);
+  for (const auto& [a, b] : seeds.edges)
+    EXPECT_NEAR(norm(seeds.seeds.positions[a] - seeds.seeds.positions[b]), 0.25, 1e-3);
 
   // Whoever else owns the surface: along the creases the crease's own seeds do.
   const std::vector<Vec3> others = blue_noise_start(samples, 400, 1);
-  std::vector<Vec3> all = fixed_and_others(seeds.places, others, 0, 0.15);
+  Seeds all = fixed_and_others(seeds.seeds, others, 0.15);
   const Vec3 intruder{1, 0.99, 0.125};
-  all.push_back(intruder);
+  all.positions.push_back(intruder);
   evenmesh::ExecutionContext context(2);
-  std::vector<std::uint32_t> labels = nearest_labels(samples, all);
+  std::vector<std::uint32_t> labels = nearest_labels(samples, all.positions);
   constrain_labels(samples, features, seeds, labels, context);
   const LabelComplex complex = connect_labels(samples, labels, all, context);
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -140,14 +141,15 @@ TEST(FeatureSeeds, AreDenserWhereTheirChordsWouldLeaveTheCrease) {
     for (const Vec3& p : curve.points) {
       double nearest = 1;
       for (const auto& [a, b] : seeds.edges) {
-        const Vec3 along = seeds.places[b] - seeds.places[a], from = p - seeds.places[a];
+        const Vec3 along = seeds.seeds.positions[b] - seeds.seeds.positions[a], from = p - seeds.seeds.positions[a];
         const double share = std::clamp(dot(from, along) / squared_norm(along), 0.0, 1.0);
         nearest = std::min(nearest, norm(from - share * along));
       }
       EXPECT_LE(nearest, feature_deviation * edge);
     }
   }
-  EXPECT_LT(double(seeds.places.size()), 2 * (1.2 * straight + 2 * round) / edge) << "but not along the straight sides";
+  EXPECT_LT(double(seeds.seeds.positions.size()), 2 * (1.2 * straight + 2 * round) / edge)
+      << "but not along the straight sides";
 }
 
 }  // namespace
