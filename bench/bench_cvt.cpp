@@ -31,7 +31,7 @@ const Surface& surface(std::size_t count) {
         shape, make_grid(shape.bounds,
                          static_cast<std::size_t>(64 * std::sqrt(100.0 * static_cast<double>(count) / presampled))));
     ExecutionContext& context = ExecutionContext::silent();
-    CellEvaluator evaluator(it->second.samples, context);
+    CpuCellEvaluator evaluator(it->second.samples, context);
     it->second.seeds = relax_seeds(evaluator, count, {}, context).seeds.positions;
   }
   return it->second;
@@ -43,7 +43,7 @@ void repeat(benchmark::State& state, const Work& work) {
   const Surface& s = surface(static_cast<std::size_t>(state.range(0)));
   ExecutionContext context(static_cast<unsigned>(state.range(1)));
   with_threads(context, [&] {
-    CellEvaluator evaluator(s.samples, context);
+    CpuCellEvaluator evaluator(s.samples, context);
     std::vector<Vec3> seeds = s.seeds;
     const double step = 1e-3 * std::sqrt(s.samples.total_area / static_cast<double>(seeds.size()));
     double sign = 1;

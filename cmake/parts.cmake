@@ -1,10 +1,10 @@
-# The installed library (all rooms in one archive), the program, tests, benchmarks, fuzzers.
+# The installed library (all modules in one archive), the program, tests, benchmarks, fuzzers.
 include(CMakePackageConfigHelpers)
 
-# The library: one archive, so that whoever installs it need not know the rooms.
+# The library: one archive, so that whoever installs it need not know the modules.
 set(objects "")
-foreach(room ${EVENMESH_ROOMS})
-  list(APPEND objects $<TARGET_OBJECTS:evenmesh_${room}>)
+foreach(module ${EVENMESH_MODULES})
+  list(APPEND objects $<TARGET_OBJECTS:evenmesh_${module}>)
 endforeach()
 add_library(evenmesh_library STATIC ${objects})
 add_library(evenmesh::evenmesh ALIAS evenmesh_library)

@@ -1,6 +1,6 @@
 # Headers that most files include, read once per group of targets instead of once per file: half of a build's time.
 #
-#   evenmesh_precompile(TARGET GROUP)    GROUP: rooms or tests
+#   evenmesh_precompile(TARGET GROUP)    GROUP: modules or tests
 #
 # Every file still includes what it uses.
 option(EVENMESH_PRECOMPILE "precompile common headers, compile the program as few files" ON)

@@ -1,11 +1,11 @@
-# One test program per folder of tests/; it links the room of the same name, or everything.
+# One test program per folder of tests/; it links the module of the same name, or everything.
 enable_testing()
 include(GoogleTest)
 
 add_custom_target(unit_tests)  # without the program, unless a test drives it
 
-function(evenmesh_test room)
-  file(GLOB sources CONFIGURE_DEPENDS tests/${room}/*.cpp)
+function(evenmesh_test module)
+  file(GLOB sources CONFIGURE_DEPENDS tests/${module}/*.cpp)
   if(NOT EVENMESH_GL)  # shaders and --raster need it; tests/without_gl sees that they are refused
     list(FILTER sources EXCLUDE REGEX "cli/test_(shaders|raster)")
   endif()
@@ -15,25 +15,25 @@ function(evenmesh_test room)
   if(NOT sources)
     return()
   endif()
-  add_executable(test_${room} ${sources})
-  target_include_directories(test_${room} PRIVATE tests)
-  target_link_libraries(test_${room} PRIVATE evenmesh_flags ${ARGN} fmt::fmt GTest::gtest_main)
-  target_compile_options(test_${room} PRIVATE $<$<CONFIG:Release>:-O1>)  # quickly built; what they test is not
-  evenmesh_precompile(test_${room} tests)
-  add_dependencies(unit_tests test_${room})
-  target_compile_definitions(test_${room} PRIVATE EVENMESH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  gtest_discover_tests(test_${room} TEST_PREFIX ${room}. DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+  add_executable(test_${module} ${sources})
+  target_include_directories(test_${module} PRIVATE tests)
+  target_link_libraries(test_${module} PRIVATE evenmesh_flags ${ARGN} fmt::fmt GTest::gtest_main)
+  target_compile_options(test_${module} PRIVATE $<$<CONFIG:Release>:-O1>)  # quickly built; what they test is not
+  evenmesh_precompile(test_${module} tests)
+  add_dependencies(unit_tests test_${module})
+  target_compile_definitions(test_${module} PRIVATE EVENMESH_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(test_${module} TEST_PREFIX ${module}. DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
                        PROPERTIES TIMEOUT 300)
 endfunction()
 
-foreach(room ${EVENMESH_ROOMS})
-  if(EVENMESH_GL OR NOT room STREQUAL "gl")  # else tests/without_gl
-    evenmesh_test(${room} evenmesh_${room})
+foreach(module ${EVENMESH_MODULES})
+  if(EVENMESH_GL OR NOT module STREQUAL "gl")  # else tests/without_gl
+    evenmesh_test(${module} evenmesh_${module})
   endif()
 endforeach()
 
-foreach(room grid features cvt connect topology refine)  # their tests sample surfaces and connect what they found
-  target_link_libraries(test_${room} PRIVATE evenmesh_features evenmesh_band evenmesh_connect)
+foreach(module grid features cvt connect topology refine)  # their tests sample surfaces and connect what they found
+  target_link_libraries(test_${module} PRIVATE evenmesh_features evenmesh_band evenmesh_connect)
 endforeach()
 if(TARGET test_pipeline)
   target_link_libraries(test_pipeline PRIVATE evenmesh_io)  # models are files
@@ -53,8 +53,8 @@ if(TARGET test_io AND TARGET evenmesh_vdb AND NOT EVENMESH_SANITIZE)
   add_dependencies(test_io evenmesh_vdb)
 endif()
 
-# The house: who includes whom.
-evenmesh_test(house)
+# Who includes whom.
+evenmesh_test(layering)
 # The program, driven from outside.
 if(NOT EVENMESH_SANITIZE)
   evenmesh_test(cli nlohmann_json::nlohmann_json)
@@ -64,7 +64,7 @@ if(TARGET test_cli)
   target_compile_definitions(test_cli PRIVATE EVENMESH_PROGRAM="$<TARGET_FILE:evenmesh>")
 endif()
 
-# What is said without OpenGL. Builds that have it make the program once more, with what stands for the room gl: no
+# What is said without OpenGL. Builds that have it make the program once more, with what stands for the module gl: no
 # second build is needed.
 if(NOT EVENMESH_SANITIZE)
   set(stand_in evenmesh_gl)
@@ -76,9 +76,9 @@ if(NOT EVENMESH_SANITIZE)
     add_library(${stand_in} STATIC ${sources} src/gl/is_glsl.cpp)
     target_link_libraries(${stand_in} PUBLIC evenmesh_shape PRIVATE evenmesh_flags)
     set(objects $<TARGET_OBJECTS:evenmesh>)
-    foreach(room ${EVENMESH_ROOMS})
-      if(NOT room STREQUAL "gl")
-        list(APPEND objects $<TARGET_OBJECTS:evenmesh_${room}>)
+    foreach(module ${EVENMESH_MODULES})
+      if(NOT module STREQUAL "gl")
+        list(APPEND objects $<TARGET_OBJECTS:evenmesh_${module}>)
       endif()
     endforeach()
     add_executable(${program} ${objects})
@@ -95,9 +95,9 @@ endif()
 
 # Somebody else's project: finds the installed package, builds the examples and README.md's C++ against it, runs them.
 if(NOT EVENMESH_SANITIZE)
-  add_test(NAME house.consumer
+  add_test(NAME package.consumer
            COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DSOURCE=${PROJECT_SOURCE_DIR}
                    -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER}
                    -P ${PROJECT_SOURCE_DIR}/tests/consumer/run.cmake)
-  set_tests_properties(house.consumer PROPERTIES TIMEOUT 300)
+  set_tests_properties(package.consumer PROPERTIES TIMEOUT 300)
 endif()

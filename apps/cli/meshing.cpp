@@ -67,9 +67,9 @@ Artifacts asked_for(const MeshingArguments& a) {
 /// What is meshed; operations may change the options, once the shape is known.
 Shape make_shape(const MeshingArguments& a, const Operation& operation, const Plan& plan, MeshOptions& options,
                  ExecutionContext& context) {
-  std::vector<Shape> inputs = read_shapes(a.input, context);
-  if (plan.on_gl) move_to_gl(inputs, a.input.options.device, plan.talk);
-  Shape shape = operation.combine ? operation.combine(std::move(inputs)) : std::move(inputs.at(0));
+  std::vector<Shape> shapes = read_shapes(a.input, context);
+  if (plan.on_gl) move_to_gl(shapes, a.input.options.device, plan.talk);
+  Shape shape = operation.combine ? operation.combine(std::move(shapes)) : std::move(shapes.at(0));
   if (plan.outliers) shape = without_outliers(shape, *plan.outliers, plan.talk, context);
   if (plan.regularize) shape = opening(closing(std::move(shape), *plan.regularize), *plan.regularize);
   if (operation.prepare) operation.prepare(shape, options, plan.talk, context);

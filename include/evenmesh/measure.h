@@ -54,8 +54,8 @@ Histogram histogram_of_angles(const Mesh& mesh, int bins);   ///< all angles, [0
 Histogram histogram_of_quality(const Mesh& mesh, int bins);  ///< Q of every triangle, [0, 1]
 
 /// Pairs of triangles that intersect where they share no vertex or edge; pairs sharing an edge count when they
-/// are coplanar and folded onto each other, pairs sharing a vertex when they meet beyond it. The same three vertices twice
-/// are a pair, whichever way round. Degenerate triangles are left out. Any mesh will do, two-manifold or not.
+/// are coplanar and folded onto each other, pairs sharing a vertex when they meet beyond it. The same three vertices
+/// twice are a pair, whichever way round. Degenerate triangles are left out. Any mesh will do, two-manifold or not.
 ///
 /// Guarantee: exact on the double coordinates given. Returns each pair once, smaller index first, sorted.
 /// Cost: near-linear for meshes without many overlaps; 120,000 faces about 0.2 s on one core.

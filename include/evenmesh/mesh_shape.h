@@ -77,7 +77,7 @@ struct Report {
   std::size_t filled_cavities = 0;     ///< parts of surface within the solid, left out
   std::size_t disagreements = 0;       ///< grid points whose inside differed between ray directions, settled by vote
   std::size_t unresolved = 0;          ///< crossings left out where a grid edge held several: thinner than a cell
-  std::size_t dropped_components = 0;  ///< dust: pieces of surface smaller than a cell, left out
+  std::size_t dropped_components = 0;  ///< small components: pieces of surface smaller than a cell, left out
   std::size_t sites = 0;               ///< shell: voxels that the surface touches
   std::size_t shell_voxels = 0;        ///< shell: voxels within the thickness
   unsigned thickness = 0;              ///< shell: half its width in voxels
@@ -85,7 +85,7 @@ struct Report {
   std::size_t cuts = 0;          ///< shell: sheets that had to end where others meet them, and vertices that were split
   std::size_t merges = 0;        ///< shell: gaps between sheets that it fills, hiding surface
   unsigned thickness_apart = 0;  ///< shell: the largest thickness that fills none of them; 0: the voxels are too large
-  std::size_t crease_vertices = 0;  ///< vertices held on sharp edges
+  std::size_t crease_vertices = 0;  ///< vertices fixed on sharp edges
   double crease_length = 0;         ///< of the sharp edges, model units
   std::size_t inserted_seeds = 0;   ///< added because the topology needed them
   std::size_t regularization_rounds = 0;

@@ -45,4 +45,7 @@ Mesh holes_filled(const Mesh& mesh, std::size_t& filled);
 /// Asked at 64 points along the longest side. Cost: some milliseconds and about 0.2 µs per triangle.
 double solidity(const Mesh& mesh, ExecutionContext& context = ExecutionContext::silent());
 
+/// Solidity below which there is no inside to speak of: sheets.
+inline constexpr double min_solidity = 0.6;
+
 }  // namespace evenmesh

@@ -25,8 +25,8 @@ DualMesh triangulate_polygons(const std::vector<std::vector<std::uint32_t>>& pol
                               std::span<const std::uint32_t> labels, std::span<const Vec3> positions,
                               bool open = false);
 
-/// Takes out pairs of triangles that share all three corners with each other and none with any other triangle: specks
-/// of three cells, closed but flat. Returns how many.
+/// Takes out pairs of triangles that share all three corners with each other and none with any other triangle: small
+/// components of three cells, closed but flat. Returns how many.
 std::size_t remove_two_triangle_spheres(std::vector<Triangle>& triangles, std::size_t vertices);
 
 /// What keeps triangles from being an oriented two-manifold; empty when they are one.

@@ -140,11 +140,11 @@ struct Piece {
   Index root = 0, label = 0;
   double area = 0;
   Vec3 moment;
-  double from_seed = std::numeric_limits<double>::infinity();  ///< squared, of the nearest sample; held labels only
+  double from_seed = std::numeric_limits<double>::infinity();  ///< squared, of the nearest sample; fixed labels only
 };
 
 /// All pieces of the labels that have several, by label; first the one that keeps it: the largest, or where the seed is
-/// held the nearest.
+/// fixed, the nearest.
 std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels, Complex& complex,
                                           const std::vector<Index>& piece_count, std::span<const Vec3> fixed) {
   UnionFind& sets = complex.sets();
@@ -261,7 +261,8 @@ class Splitter {
       if (best > 0)
         label_of_root.push_back({root, label_of(best_root)});
       else
-        give_new_label(pieces_[p], label_of_root);  // nothing around it: a speck of surface of its own, or among specks
+        give_new_label(pieces_[p],
+                       label_of_root);  // nothing around it: a small component of its own, or among such
     }
     dirty_ = std::move(brick_dirty);
   }

@@ -28,7 +28,7 @@ struct LabelComplex {
   std::vector<Triangle> triangles;    ///< of labels, counter-clockwise from outside
   std::size_t labels = 0;             ///< labels in use, after splitting; new ones follow the given ones
   std::vector<CellComponent> pieces;  ///< pieces that became cells of their own, in order of new label
-  std::int64_t surface_euler = 0;     ///< χ of the sampled surface; the mesh must have it (dust apart)
+  std::int64_t surface_euler = 0;     ///< χ of the sampled surface; the mesh must have it (small components apart)
   /// Where seeds are needed, sorted: pairs of labels whose cells meet along several arcs; (l, l) for a cell that is not
   /// a disk or meets itself around a corner.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> defects;
@@ -48,5 +48,14 @@ struct LabelComplex {
 /// Same bits for any number of threads. Cost: about 60 ns per sample and core.
 LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>& labels, const Seeds& seeds,
                             ExecutionContext& context);
+
+/// The extraction of triangles, as a device can take it over.
+class ExtractionKernel {
+ public:
+  virtual ~ExtractionKernel() = default;
+  /// @return what connect_labels() gives, to the last bit
+  virtual LabelComplex connect(const SampleSet& samples, std::vector<std::uint32_t>& labels, const Seeds& seeds,
+                               ExecutionContext& context) const = 0;
+};
 
 }  // namespace evenmesh

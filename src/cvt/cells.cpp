@@ -90,7 +90,7 @@ struct Workspace {
 
 }  // namespace
 
-struct CellEvaluator::State {
+struct CpuCellEvaluator::State {
   const SampleSet& samples;
   ExecutionContext& context;
   CandidateLists lists;
@@ -165,14 +165,18 @@ struct CellEvaluator::State {
   }
 };
 
-CellEvaluator::CellEvaluator(const SampleSet& samples, ExecutionContext& context)
+CpuCellEvaluator::CpuCellEvaluator(const SampleSet& samples, ExecutionContext& context)
     : state_(std::make_unique<State>(samples, context)) {}
-CellEvaluator::~CellEvaluator() = default;
-const SampleSet& CellEvaluator::samples() const {
+CpuCellEvaluator::~CpuCellEvaluator() = default;
+std::unique_ptr<CellEvaluator> CpuCellEvaluator::for_samples(const SampleSet& samples,
+                                                             ExecutionContext& context) const {
+  return std::make_unique<CpuCellEvaluator>(samples, context);
+}
+const SampleSet& CpuCellEvaluator::samples() const {
   return state_->samples;
 }
 
-void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
+void CpuCellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
   State& state = *state_;
   state.lists.update(seeds, state.context);
   // Masses add up to `weight`, moments to less than weight × extent: 2^61 leaves room for rounding.
@@ -219,7 +223,7 @@ void CellEvaluator::evaluate(std::span<const Vec3> seeds, CellSums& sums) {
   for (const double e : state.block_energy) sums.energy += e;
 }
 
-void CellEvaluator::nearest(std::span<const Vec3> seeds, std::vector<std::uint32_t>& labels) {
+void CpuCellEvaluator::nearest(std::span<const Vec3> seeds, std::vector<std::uint32_t>& labels) {
   State& state = *state_;
   state.lists.update(seeds, state.context);
   labels.resize(state.samples.size());
@@ -231,7 +235,7 @@ void CellEvaluator::nearest(std::span<const Vec3> seeds, std::vector<std::uint32
                    });
 }
 
-void CellEvaluator::nearest_pairs(std::span<const Vec3> seeds, std::vector<NearestPair>& pairs) {
+void CpuCellEvaluator::nearest_pairs(std::span<const Vec3> seeds, std::vector<NearestPair>& pairs) {
   State& state = *state_;
   state.lists.update(seeds, state.context);
   pairs.resize(state.samples.size());

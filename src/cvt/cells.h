@@ -37,22 +37,45 @@ struct NearestPair {
 /// The discrete form of [Raster2Mesh §4.2].
 class CellEvaluator {
  public:
-  /// Keeps a reference to `samples`.
-  CellEvaluator(const SampleSet& samples, ExecutionContext& context);
-  ~CellEvaluator();
+  CellEvaluator() = default;
+  virtual ~CellEvaluator() = default;
   CellEvaluator(const CellEvaluator&) = delete;
   CellEvaluator& operator=(const CellEvaluator&) = delete;
 
-  const SampleSet& samples() const;
+  virtual const SampleSet& samples() const = 0;
+  /// An evaluator of the same kind for other samples, to which it keeps a reference.
+  virtual std::unique_ptr<CellEvaluator> for_samples(const SampleSet& samples, ExecutionContext& context) const = 0;
 
-  void evaluate(std::span<const Vec3> seeds, CellSums& sums);
+  virtual void evaluate(std::span<const Vec3> seeds, CellSums& sums) = 0;
   /// Nearest seed of every sample, ties to the lower index. Cost: about 2 ns per sample and core.
-  void nearest(std::span<const Vec3> seeds, std::vector<std::uint32_t>& labels);
-  void nearest_pairs(std::span<const Vec3> seeds, std::vector<NearestPair>& pairs);
+  virtual void nearest(std::span<const Vec3> seeds, std::vector<std::uint32_t>& labels) = 0;
+  virtual void nearest_pairs(std::span<const Vec3> seeds, std::vector<NearestPair>& pairs) = 0;
+};
+
+class CpuCellEvaluator final : public CellEvaluator {
+ public:
+  /// Keeps a reference to `samples`.
+  CpuCellEvaluator(const SampleSet& samples, ExecutionContext& context);
+  ~CpuCellEvaluator() override;
+
+  const SampleSet& samples() const override;
+  std::unique_ptr<CellEvaluator> for_samples(const SampleSet& samples, ExecutionContext& context) const override;
+
+  void evaluate(std::span<const Vec3> seeds, CellSums& sums) override;
+  void nearest(std::span<const Vec3> seeds, std::vector<std::uint32_t>& labels) override;
+  void nearest_pairs(std::span<const Vec3> seeds, std::vector<NearestPair>& pairs) override;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
+};
+
+/// Makes evaluators that a device runs.
+class CellKernel {
+ public:
+  virtual ~CellKernel() = default;
+  /// Keeps a reference to `samples`. @return with the guarantees of CellEvaluator
+  virtual std::unique_ptr<CellEvaluator> evaluator(const SampleSet& samples, ExecutionContext& context) const = 0;
 };
 
 /// Energy ratio F·k/A² / (5/(18√3)): 1 for a perfect hexagonal tiling of a plane, and, with the scale of

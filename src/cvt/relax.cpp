@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t coarsest_seeds = 300;  ///< fewer cannot follow the shape; more leave more grain boundaries
 constexpr double samples_per_seed = 80;      ///< wanted on every level
-constexpr double clear_distance = 0.6;       ///< of others from seeds that are held, in edges, before they are balanced
+constexpr double clear_distance = 0.6;  ///< of others from seeds that are fixed, in edges, before they are balanced
 
 /// The sample set and thinner and thinner versions of it, each with its evaluator.
 class Pyramid {
@@ -23,7 +23,7 @@ class Pyramid {
   Pyramid(CellEvaluator& finest, double fewest_samples, ExecutionContext& context) : levels_{&finest} {
     while (static_cast<double>(levels_.back()->samples().size()) / 4 >= fewest_samples) {
       sets_.push_back(std::make_unique<SampleSet>(coarsen(levels_.back()->samples(), context)));
-      evaluators_.push_back(std::make_unique<CellEvaluator>(*sets_.back(), context));
+      evaluators_.push_back(finest.for_samples(*sets_.back(), context));
       levels_.push_back(evaluators_.back().get());
     }
   }
@@ -99,7 +99,7 @@ class Balance {
     adjust_count(pyramid_.for_seeds(n), seeds_, n, options_.seed + 4, context_);
   }
 
-  /// Puts those seeds first that are to be held among n; not on coarse levels where they would leave no room for
+  /// Puts those seeds first that are to be fixed among n; not on coarse levels where they would leave no room for
   /// others.
   void hold(std::size_t n) {
     if (!options_.fixed) return;

@@ -11,10 +11,10 @@
 namespace evenmesh {
 namespace {
 
-constexpr double around = 1;            ///< edges: so far the planes go through the tip, and nothing else comes near
-constexpr double max_residual = 0.005;  ///< of a plane's distance from the tip, root of the mean square, in edges
-constexpr double max_missing = 4;       ///< grid cells from the tip to the nearest sample: needles are seen cut off
-constexpr double apart = 0.5;           ///< edges: nearer to creases, and to each other, none are looked for
+constexpr double around = 1;            ///< edges: so far the planes go through the apex, and nothing else comes near
+constexpr double max_residual = 0.005;  ///< of a plane's distance from the apex, root of the mean square, in edges
+constexpr double max_missing = 4;       ///< grid cells from the apex to the nearest sample: needles are seen cut off
+constexpr double apart = 0.5;           ///< edges: nearer to feature curves, and to each other, none are looked for
 constexpr std::size_t max_candidates = 2000;
 
 class TipFinder {
@@ -22,12 +22,12 @@ class TipFinder {
   TipFinder(const SampleSet& samples, double angle, double edge)
       : samples_(samples), max_mean_(std::cos(angle * std::numbers::pi / 180)), edge_(edge) {}
 
-  /// The tip that is near to p, if there is one.
+  /// The apex that is near to p, if there is one.
   std::optional<Vec3> near(Vec3 p) const {
     for (int step = 0; step < 3; ++step) {
       Quadric planes;
       each_around(p, [&](const Vec3& x, const Vec3& n) { planes.add_plane(x - p, n); });
-      if (planes.rank() < 3) return {};  // a crease at most, or nothing
+      if (planes.rank() < 3) return {};  // a feature curve at most, or nothing
       const Vec3 move = planes.minimum(3, 3);
       if (!(norm(move) < around * edge_)) return {};
       p += move;

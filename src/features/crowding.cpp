@@ -32,7 +32,7 @@ class Crowding {
     Index curve, point;
   };
 
-  /// Whether a third of the chain's points, not counting those near its ends, have others beside them.
+  /// Whether a third of the curve's points, not counting those near its ends, have others beside them.
   bool is_crowded(Index c) const {
     const FeatureCurve& curve = features_.curves[c];
     std::size_t asked = 0, crowded = 0;

@@ -5,11 +5,11 @@
 
 namespace evenmesh {
 
-/// Leaves out chains of which a third runs beside other chains, or beside another part of themselves, nearer than
-/// `reach` (model units), as around a thin plate; and the corners that are left without a chain.
+/// Leaves out curves of which a third runs beside other curves, or beside another part of themselves, nearer than
+/// `reach` (model units), as around a thin plate; and the corners that are left without a curve.
 FeatureCurves without_crowded(const FeatureCurves& features, double reach);
 
-/// The creases but for the marked chains, and without corners where none ends any more. @param doomed  by chain
+/// The feature curves but for the marked curves, and without corners where none ends any more. @param doomed  by curve
 FeatureCurves without_curves(const FeatureCurves& features, const std::vector<char>& doomed);
 
 }  // namespace evenmesh

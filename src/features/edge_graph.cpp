@@ -24,7 +24,7 @@ struct BrickNodes {
   std::vector<HalfLink> links;  ///< nodes numbered within the brick
   std::uint32_t loops = 0;      ///< creased or not
 
-  /// Even where several creases meet most of the surface around is smooth; on fractals most of it is not.
+  /// Even where several feature curves meet most of the surface around is smooth; on fractals most of it is not.
   bool rough() const { return nodes.size() > 32 && 2 * nodes.size() > loops; }
 };
 

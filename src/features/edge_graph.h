@@ -1,5 +1,5 @@
 #pragma once
-/// Which grid cubes a crease passes through, and from which to which it goes.
+/// Which grid cubes a feature curve passes through, and from which to which it goes.
 
 #include <array>
 #include <cstdint>
@@ -12,21 +12,21 @@
 namespace evenmesh {
 
 struct FeatureNode {
-  Vec3 place;                  ///< of the crease in one cube, model units
+  Vec3 place;                  ///< of the feature curve in one cube, model units
   Quadric planes;              ///< of the cube's crossings, about the grid's origin
   double relative_sizing = 1;  ///< 1 / wanted vertex spacing, compared with the mean: 1 where the density is uniform
 };
 
-/// One node for every loop of crossings in a cube that a crease passes through, one link for every face between two.
-/// Where most of a brick is creased, as on fractals or at the tip of a needle, there is one node and no link.
+/// One node for every loop of crossings in a cube that a feature curve passes through, one link for every face between
+/// two. Where most of a brick is creased, as on fractals or at the apex of a needle, there is one node and no link.
 struct FeatureGraph {
   std::vector<FeatureNode> nodes;
   std::vector<std::array<std::uint32_t, 2>> links;
   std::vector<char> sharp;  ///< by link: beyond the angle asked for
 };
 
-/// @param sharp  cosine of the angle between normals from which on there is a crease
-/// @param weak   cosine of a smaller angle: what is between the two may continue a crease
+/// @param sharp  cosine of the angle between normals from which on there is a feature curve
+/// @param weak   cosine of a smaller angle: what is between the two may continue a feature curve
 /// Guarantee: same graph for any number of threads. Cost: about 50 ns per sample and core.
 FeatureGraph find_feature_graph(const SampleSet& samples, double sharp, double weak, ExecutionContext& context);
 

@@ -16,12 +16,12 @@ namespace {
 
 using Index = std::uint32_t;
 constexpr Index none = FeatureCurve::none;
-constexpr double crowded_distance = 0.33;  ///< of chains side by side, in edges
-constexpr double weak_angle = 0.65;        ///< of the angle asked for: down to this creases go on that fade
+constexpr double crowded_distance = 0.33;  ///< of curves side by side, in edges
+constexpr double weak_angle = 0.65;        ///< of the angle asked for: down to this feature curves go on that fade
 constexpr double max_tightened = 1.5;      ///< how much denser vertices are there than elsewhere, at most
 constexpr double sharp_turn = 40;          ///< degrees within a few grid cells: a corner
 
-/// Makes chains of the network's paths.
+/// Makes curves of the network's paths.
 class Chains {
  public:
   Chains(double edge, double spacing) : edge_(edge), spacing_(spacing) {}
@@ -56,7 +56,7 @@ class Chains {
     return thinned(kept, 0.8 * spacing_);
   }
 
-  /// Adds the points as one chain, or as several if there are turns in it.
+  /// Adds the points as one curve, or as several if there are turns in it.
   void add(std::vector<PolylinePoint> points, Index from, Index to) {
     const bool closed = from == none;
     const double reach = std::max(3 * spacing_, 0.25 * edge_);

@@ -1,5 +1,5 @@
 #pragma once
-/// Sharp edges of a sampled surface: chains along them, and the corners where these begin, end, meet or turn.
+/// Sharp edges of a sampled surface: curves along them, and the corners where these begin, end, meet or turn.
 
 #include <cstdint>
 #include <vector>
@@ -15,7 +15,7 @@ inline constexpr double feature_deviation = 0.08;
 /// A sharp edge from one corner to another, or to itself.
 struct FeatureCurve {
   static constexpr std::uint32_t none = 0xffffffffu;
-  std::uint32_t from = none, to = none;  ///< corners; none: a closed chain, whose last point is its first
+  std::uint32_t from = none, to = none;  ///< corners; none: a closed curve, whose last point is its first
   std::vector<Vec3> points;              ///< two or more, about a grid cell apart; the corners are among them
   /// Up to each point: length, in units of the spacing that vertices are meant to have there (model units times a
   /// factor that is 1 where the density is uniform).
@@ -26,18 +26,19 @@ struct FeatureCurve {
 struct FeatureCurves {
   std::vector<Vec3> corners;
   std::vector<FeatureCurve> curves;
-  std::vector<Vec3> apexes;  ///< of cones and the like: points where the normal turns and no chain ends
+  std::vector<Vec3> apexes;  ///< of cones and the like: points where the normal turns and no curve ends
 };
 
 /// Finds the edges across which the normal turns by more than `angle` degrees.
 ///
 /// Two crossings of the surface with the edges of one face of the grid, neighbours along the surface, whose normals
-/// differ by more than that have a crease between them; it goes on into the cubes on both sides of the face. So creases
-/// are paths of cubes, found without any search in space. A cube's point of the crease is where the tangent planes of
-/// its crossings meet (Ju et al., Dual contouring of Hermite data, 2002); three kinds of planes make a corner.
+/// differ by more than that have a feature curve between them; it goes on into the cubes on both sides of the face. So
+/// feature curves are paths of cubes, found without any search in space. A cube's point of the feature curve is where
+/// the tangent planes of its crossings meet (Ju et al., Dual contouring of Hermite data, 2002); three kinds of planes
+/// make a corner.
 ///
-/// FeatureCurves that fade are followed down to two thirds of the angle. Connected chains of a few edges' length, or
-/// more with loose ends, are noise and left out; corners nearer than a fifth of it become one. Chains that run side by
+/// Curves that fade are followed down to two thirds of the angle. Connected curves of a few edges' length, or
+/// more with loose ends, are noise and left out; corners nearer than a fifth of it become one. Curves that run side by
 /// side nearer than a third of it, as around thin plates, are left out too: no mesh of such edges follows both.
 /// @param edge  mean edge length of the mesh to come, model units; the grid is a few times finer
 /// Guarantee: same result for any number of threads. Cost: about 50 ns per sample and core.

@@ -10,7 +10,7 @@ namespace {
 
 using Index = std::uint32_t;
 constexpr Index none = FeaturePath::none;
-constexpr double min_length = 3;  ///< of connected chains together, in edges, and five times that for every loose end
+constexpr double min_length = 3;  ///< of connected curves together, in edges, and five times that for every loose end
 constexpr double loop_length = 1.5;      ///< of a loop from a corner to itself, in edges
 constexpr double spur_length = 0.7;      ///< of a branch that ends nowhere, in edges
 constexpr double corner_distance = 0.2;  ///< corners nearer than this, in edges, are one

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double held_distance = 1.5;  ///< grid cells
 
-/// A piece of a chain, between its points `point` and `point` + 1.
+/// A piece of a curve, between its points `point` and `point` + 1.
 struct Segment {
   std::uint32_t curve, point;
 };
@@ -50,7 +50,7 @@ class SegmentIndex {
   std::unordered_map<std::uint64_t, std::vector<Segment>> of_brick_;
 };
 
-/// The seed of chain c at the length s along it.
+/// The seed of curve c at the length s along it.
 std::uint32_t seed_at(const FeatureCurves& features, const FeatureSeeds& seeds, std::uint32_t c, double s) {
   const FeatureCurve& curve = features.curves[c];
   const std::uint32_t n = seeds.segments[c];
@@ -59,7 +59,7 @@ std::uint32_t seed_at(const FeatureCurves& features, const FeatureSeeds& seeds, 
   return k == 0 ? curve.from : k == n ? curve.to : seeds.first[c] + k - 1;
 }
 
-/// Point at the length s along a chain.
+/// Point at the length s along a curve.
 Vec3 point_at(const FeatureCurve& curve, double s) {
   const auto after =
       std::clamp<std::ptrdiff_t>(std::upper_bound(curve.arc.begin(), curve.arc.end(), s) - curve.arc.begin(), 1,
@@ -69,7 +69,7 @@ Vec3 point_at(const FeatureCurve& curve, double s) {
   return curve.points[i - 1] + share * (curve.points[i] - curve.points[i - 1]);
 }
 
-/// Largest distance of the chain's points from the chords of n equal pieces.
+/// Largest distance of the curve's points from the chords of n equal pieces.
 double deviation(const FeatureCurve& curve, std::uint32_t n) {
   double worst = 0;
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
@@ -81,7 +81,7 @@ double deviation(const FeatureCurve& curve, std::uint32_t n) {
   return worst;
 }
 
-/// Into how many pieces a chain is cut: of the length `edge`, or a little less where it is bent so much that chords
+/// Into how many pieces a curve is cut: of the length `edge`, or a little less where it is bent so much that chords
 /// would leave it.
 std::uint32_t segments_of(const FeatureCurve& curve, double edge) {
   const std::uint32_t least = curve.from == curve.to ? 3 : 1;

@@ -18,7 +18,7 @@ std::vector<PolylinePoint> thinned(const std::vector<PolylinePoint>& points, dou
 
 double length_of(const std::vector<PolylinePoint>& points);
 
-/// A chain as points with lengths, open or closed.
+/// A curve as points with lengths, open or closed.
 class Polyline {
  public:
   Polyline(std::vector<PolylinePoint> points, bool closed);

@@ -10,8 +10,6 @@
 namespace evenmesh {
 namespace {
 
-constexpr double min_solidity = 0.6;  ///< below it there is no inside to speak of
-
 /// The hull, decided.
 Hull decide(Hull hull, Repaired& r, ExecutionContext& context) {
   if (hull != Hull::automatic) return hull;
@@ -22,7 +20,8 @@ Hull decide(Hull hull, Repaired& r, ExecutionContext& context) {
 
 Repaired repair(const Shape& shape, Hull asked, const MeshOptions& options, ExecutionContext& context) {
   context.throw_if_cancelled();
-  Repaired r{.options = options};
+  Repaired r;
+  r.options = options;
   Mesh mesh = cleaned(*shape.mesh(), r.defects);
   if (mesh.triangles.empty()) throw UnusableInput(shape.name + " has no triangle with an area");
   r.shape = shape_from_mesh(std::move(mesh), shape.name);

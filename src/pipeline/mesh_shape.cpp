@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "pipeline/draft.h"
+#include "pipeline/kernels.h"
 #include "pipeline/plan.h"
 #include "pipeline/refine.h"
 #include "pipeline/report.h"
@@ -33,12 +34,13 @@ void check(const MeshOptions& o) {
     throw InvalidInput("the bounds are empty: each lower limit must be below its upper one");
 }
 
-MeshResult run(const Shape& shape, const MeshOptions& options, ExecutionContext& context, Artifacts& kept) {
+MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
+               Artifacts& kept) {
   StageTimer timer(context);
-  const std::unique_ptr<Sampler> sampler = make_sampler(shape, options.bounds, timer, context);
+  const std::unique_ptr<Sampler> sampler = make_sampler(shape, options.bounds, kernels, timer, context);
   Plan plan = make_plan(*sampler, options, timer, context);
   Sampling sampling = sample(*sampler, std::move(plan), options, timer, context, kept);
-  const Tessellation cells = tessellate(std::move(sampling), options, timer, context);
+  const Tessellation cells = tessellate(std::move(sampling), options, kernels, timer, context);
   const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, options, context); });
   Refined refined = refine(draft, cells, *sampler, options, timer, context);
   return measure(std::move(refined), draft, cells, options, timer, context);
@@ -46,10 +48,15 @@ MeshResult run(const Shape& shape, const MeshOptions& options, ExecutionContext&
 
 }  // namespace
 
-MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, ExecutionContext& context, Artifacts* kept) {
+MeshResult mesh_with(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
+                     Artifacts& kept) {
   check(options);
+  return with_threads(context, [&] { return run(kernels, shape, options, context, kept); });
+}
+
+MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, ExecutionContext& context, Artifacts* kept) {
   Artifacts none;
-  return with_threads(context, [&] { return run(shape, options, context, kept ? *kept : none); });
+  return mesh_with({}, shape, options, context, kept ? *kept : none);
 }
 
 }  // namespace evenmesh

@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "evenmesh/error.h"
+#include "evenmesh/repair.h"
 #include "grid/sizing_field.h"
 #include "pipeline/presample.h"
 
 namespace evenmesh {
 namespace {
 
-constexpr double min_solidity = 0.6;            ///< of what has an inside to speak of
 constexpr std::size_t many_components = 16;     ///< small ones: of a surface that is taken for a fractal
 constexpr double samples_per_voxel_area = 1.5;  ///< Σ |n_a|, the mean over all directions
 constexpr unsigned default_thickness = 2;       ///< voxels

@@ -12,7 +12,7 @@ struct SurfaceScale {
   double samples_per_area = 0;       ///< times h²: Σ_a ∫ |n_a| / area, between 1 and √3
   double curvature_radius = 0;       ///< nine tenths of the surface are curved less than 1 / this
   double thickness = 0;              ///< of the thinnest parts (2 % of the area are thinner), infinite if none is seen
-  std::size_t small_components = 0;  ///< pieces of surface of a few grid cells: dust, as around fractals
+  std::size_t small_components = 0;  ///< pieces of surface of a few grid cells: small components, as around fractals
 };
 
 /// Curvature from the change of normals between near samples, thickness from near samples that face away from each

@@ -11,7 +11,7 @@ struct Refined {
   std::size_t self_intersections = 0;  ///< pairs of triangles that are left, in single precision as files hold it
 };
 
-/// Vertices go onto the surface, edges are flipped to Delaunay, the worst triangles polished, tips and ridges fitted,
+/// Vertices go onto the surface, edges are flipped to Delaunay, the worst triangles polished, apexes and ridges fitted,
 /// and what runs through itself is pulled apart. Vertices on feature curves stay on them as long as triangles allow it.
 /// A mesh that is not two-manifold is only projected.
 /// Guarantee: same bytes for any number of threads.

@@ -121,7 +121,7 @@ class BandSampling {
   }
 
   NarrowBand band_around(const SiteVoxels& sites) {
-    NarrowBand band = build_narrow_band(sites, result_.plan.grid.thickness, context_);
+    NarrowBand band = sampler_.narrow_band(sites, result_.plan.grid.thickness, context_);
     result_.band_voxels = band.size();
     keep_shell(band, sampler_.bounds(), kept_);
     return band;
@@ -158,7 +158,7 @@ class BandSampling {
     result_.samples = timer_.stage("shell", 0.1, [&] {
       const BandSurface surface = band_surface(band_around(sites), sites, context_);
       const SiteVoxels border = outer_border(surface, outer_sheets(surface, context_), sites.grid, context_);
-      const NarrowBand eroded = build_narrow_band(border, result_.plan.grid.thickness - 1, context_);
+      const NarrowBand eroded = sampler_.narrow_band(border, result_.plan.grid.thickness - 1, context_);
       return enclosed_by(band_surface(eroded, border, context_), context_);
     });
     if (result_.samples.size() == 0) throw UnusableInput("the surface is too small for its grid: raise the resolution");

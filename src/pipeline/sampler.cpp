@@ -79,8 +79,8 @@ class FieldSampler final : public Sampler {
 
 class PointSampler final : public Sampler {
  public:
-  PointSampler(Shape shape, ExecutionContext& context)
-      : Sampler(std::move(shape)), spacing_(evenmesh::point_spacing(cloud(), context)) {}
+  PointSampler(Shape shape, const Kernels& kernels, ExecutionContext& context)
+      : Sampler(std::move(shape), kernels), spacing_(evenmesh::point_spacing(cloud(), context)) {}
 
   bool has_inside() const override { return false; }
   double solidity(ExecutionContext&) const override { return 0; }
@@ -94,7 +94,7 @@ class PointSampler final : public Sampler {
     SiteVoxels sparse = voxelize_points(cloud().points, cloud().normals, grid, context);
     if (sparse.size() == 0) return sparse;
     if (sparse.normal.empty()) estimate_normals(sparse, 2 * plan.bridge, context);
-    const NarrowBand band = build_narrow_band(sparse, plan.bridge, context);
+    const NarrowBand band = narrow_band(sparse, plan.bridge, context);
     return moving_least_squares(sparse, band, spacing_, !cloud().normals.empty(), context);
   }
 
@@ -172,22 +172,27 @@ Shape bounded(Shape shape, const std::optional<Box>& bounds, StageTimer& timer, 
 }  // namespace
 
 SampleSet Sampler::sample(const Grid& grid, ExecutionContext& context) const {
-  return sample_shape(shape_, grid, context);
+  return kernels_.rays ? kernels_.rays->sample(shape_, grid, context) : sample_shape(shape_, grid, context);
+}
+
+NarrowBand Sampler::narrow_band(const SiteVoxels& sites, unsigned reach, ExecutionContext& context) const {
+  return kernels_.band ? kernels_.band->build(sites, reach, context) : build_narrow_band(sites, reach, context);
 }
 
 std::unique_ptr<Projector> Sampler::projector(const SampleSet&, ExecutionContext& context) const {
   return make_projector(shape_, bounds(), context);
 }
 
-std::unique_ptr<Sampler> make_sampler(const Shape& shape, const std::optional<Box>& bounds, StageTimer& timer,
-                                      ExecutionContext& context) {
+std::unique_ptr<Sampler> make_sampler(const Shape& shape, const std::optional<Box>& bounds, const Kernels& kernels,
+                                      StageTimer& timer, ExecutionContext& context) {
   Shape whole = bounded(shape, bounds, timer, context);
-  if (whole.mesh()) return std::make_unique<MeshSampler>(std::move(whole));
+  if (whole.mesh()) return std::make_unique<MeshSampler>(std::move(whole), kernels);
   if (whole.points())
-    return timer.stage("voxelize", 0, [&] { return std::make_unique<PointSampler>(std::move(whole), context); });
-  if (whole.compound()) return std::make_unique<CompoundSampler>(std::move(whole));
-  if (whole.ray_source()) return std::make_unique<RaySampler>(std::move(whole));
-  return std::make_unique<FieldSampler>(std::move(whole));
+    return timer.stage("voxelize", 0,
+                       [&] { return std::make_unique<PointSampler>(std::move(whole), kernels, context); });
+  if (whole.compound()) return std::make_unique<CompoundSampler>(std::move(whole), kernels);
+  if (whole.ray_source()) return std::make_unique<RaySampler>(std::move(whole), kernels);
+  return std::make_unique<FieldSampler>(std::move(whole), kernels);
 }
 
 }  // namespace evenmesh

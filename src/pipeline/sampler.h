@@ -9,6 +9,7 @@
 #include "band/voxelize.h"
 #include "evenmesh/shape.h"
 #include "grid/sample_set.h"
+#include "pipeline/kernels.h"
 #include "pipeline/stage_timer.h"
 #include "sample/projector.h"
 #include "shape/non_finite.h"
@@ -27,7 +28,7 @@ struct VoxelPlan {
 /// Callable from one thread at a time; uses several itself.
 class Sampler {
  public:
-  explicit Sampler(Shape shape) : shape_(std::move(shape)), non_finite_(shape_) {}
+  Sampler(Shape shape, const Kernels& kernels) : shape_(std::move(shape)), kernels_(kernels), non_finite_(shape_) {}
   virtual ~Sampler() = default;
   Sampler(const Sampler&) = delete;
   Sampler& operator=(const Sampler&) = delete;
@@ -51,6 +52,9 @@ class Sampler {
   /// The voxels that the surface touches.
   virtual SiteVoxels voxelize(const VoxelPlan& plan, ExecutionContext& context) const = 0;
 
+  /// The voxels within `reach` voxels of the sites.
+  NarrowBand narrow_band(const SiteVoxels& sites, unsigned reach, ExecutionContext& context) const;
+
   /// Onto the shape itself, or onto `samples` where single points of it are expensive; null where neither is known.
   virtual std::unique_ptr<Projector> projector(const SampleSet& samples, ExecutionContext& context) const;
   /// The last bit of the way for points that were projected onto samples only, all at once.
@@ -64,12 +68,14 @@ class Sampler {
   Shape shape_;
 
  private:
+  Kernels kernels_;
   NonFiniteValues non_finite_;
 };
 
 /// The only place that asks what kind a shape is. Finds bounds where there are none, and cuts the shape by those given.
 /// @throws UnusableInput  nothing bounds it, or its longest side is not between 1e-8 and 1e10
-std::unique_ptr<Sampler> make_sampler(const Shape& shape, const std::optional<Box>& bounds, StageTimer& timer,
-                                      ExecutionContext& context);
+/// @param kernels  must outlive it
+std::unique_ptr<Sampler> make_sampler(const Shape& shape, const std::optional<Box>& bounds, const Kernels& kernels,
+                                      StageTimer& timer, ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -148,8 +148,9 @@ void repair_sheets(Tessellator& state) {
     cells.sampling.findings.push_back(make_finding(FindingCode::sheet_topology_kept));
 }
 
-Tessellation tessellate(Sampling sampling, const MeshOptions& options, StageTimer& timer, ExecutionContext& context) {
-  Tessellator state(std::move(sampling), options, timer, context);
+Tessellation tessellate(Sampling sampling, const MeshOptions& options, const Kernels& kernels, StageTimer& timer,
+                        ExecutionContext& context) {
+  Tessellator state(std::move(sampling), options, kernels, timer, context);
   state.find_features();
   state.relax_all(state.wanted());
   state.connect();

@@ -35,6 +35,7 @@ struct Tessellation {
 /// left, with two_manifold false.
 /// Based on [Raster2Mesh §4.2–4.4] and, for sheets, [NBEDT §3.3, 3.4]: there seeds relax on one side of the shell, and
 /// cells are connected along its border.
-Tessellation tessellate(Sampling sampling, const MeshOptions& options, StageTimer& timer, ExecutionContext& context);
+Tessellation tessellate(Sampling sampling, const MeshOptions& options, const Kernels& kernels, StageTimer& timer,
+                        ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -49,14 +49,17 @@ std::string reason_against(const FeatureCurves& features, std::size_t fixed, con
 
 }  // namespace
 
-Tessellator::Tessellator(Sampling sampling, const MeshOptions& o, StageTimer& t, ExecutionContext& c)
-    : options(o), timer(t), context(c) {
+Tessellator::Tessellator(Sampling sampling, const MeshOptions& o, const Kernels& kernels, StageTimer& t,
+                         ExecutionContext& c)
+    : options(o), timer(t), context(c), kernels_(kernels) {
   result.sampling = std::move(sampling);
   renew_evaluator();
 }
 
 void Tessellator::renew_evaluator() {
-  evaluator_ = std::make_unique<CellEvaluator>(result.sampling.samples, context);
+  const SampleSet& samples = result.sampling.samples;
+  evaluator_ = kernels_.cells ? kernels_.cells->evaluator(samples, context)
+                              : std::make_unique<CpuCellEvaluator>(samples, context);
 }
 
 double Tessellator::edge() const {
@@ -121,11 +124,16 @@ void Tessellator::connect() {
   });
 }
 
+LabelComplex Tessellator::dual_of(const SampleSet& samples, std::vector<std::uint32_t>& labels) const {
+  return kernels_.extraction ? kernels_.extraction->connect(samples, labels, result.seeds, context)
+                             : connect_labels(samples, labels, result.seeds, context);
+}
+
 void Tessellator::connect_solid() {
   const SampleSet& samples = result.sampling.samples;
   if (options.connect == Connect::flood) flood_labels(samples, result.labels, result.seeds, context);
   if (fixed() > 0) constrain_labels(samples, result.features, result.feature_seeds, result.labels, context);
-  result.complex = connect_labels(samples, result.labels, result.seeds, context);
+  result.complex = dual_of(samples, result.labels);
 }
 
 /// Along both sides of the shell, of which one has labels.
@@ -135,7 +143,7 @@ void Tessellator::connect_sheets() {
   std::vector<std::uint32_t> all(both.size(), no_label);
   for (std::size_t i = 0; i < result.labels.size(); ++i) all[sheet.chosen[i]] = result.labels[i];
   if (options.connect == Connect::flood) flood_labels(both, all, result.seeds, context);
-  result.complex = connect_labels(both, all, result.seeds, context);
+  result.complex = dual_of(both, all);
   for (std::size_t i = 0; i < result.labels.size(); ++i) result.labels[i] = all[sheet.chosen[i]];
 }
 

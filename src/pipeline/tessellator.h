@@ -14,7 +14,8 @@ using Defect = std::pair<std::uint32_t, std::uint32_t>;
 
 class Tessellator {
  public:
-  Tessellator(Sampling sampling, const MeshOptions& options, StageTimer& timer, ExecutionContext& context);
+  Tessellator(Sampling sampling, const MeshOptions& options, const Kernels& kernels, StageTimer& timer,
+              ExecutionContext& context);
 
   /// Looks for sharp edges, where seeds are fixed so that the mesh gets an edge there.
   void find_features();
@@ -57,12 +58,14 @@ class Tessellator {
   ExecutionContext& context;
 
  private:
+  LabelComplex dual_of(const SampleSet& samples, std::vector<std::uint32_t>& labels) const;
   void connect_solid();
   void connect_sheets();
   void connect_as_fragments();
   void renew_evaluator();
   void refill_idle_seeds();
 
+  const Kernels& kernels_;
   std::unique_ptr<CellEvaluator> evaluator_;
 };
 

@@ -10,11 +10,12 @@
 namespace evenmesh {
 namespace {
 
-constexpr double worth_fitting = 0.15;         ///< of the edge length
-constexpr double min_score = 0.913;            ///< Q ≥ 0.639, angles ≥ 34.2°
-constexpr double min_cosine_at_creases = 0.7;  ///< of a triangle's turn: not from one side of a crease to the other
-constexpr double max_lift = 0.2;               ///< of the edge length
-constexpr double among_the_worst = 0.8;        ///< of the largest deviation: what a round looks at
+constexpr double worth_fitting = 0.15;  ///< of the edge length
+constexpr double min_score = 0.913;     ///< Q ≥ 0.639, angles ≥ 34.2°
+constexpr double min_cosine_at_creases =
+    0.7;                                 ///< of a triangle's turn: not from one side of a feature curve to the other
+constexpr double max_lift = 0.2;         ///< of the edge length
+constexpr double among_the_worst = 0.8;  ///< of the largest deviation: what a round looks at
 constexpr int max_rounds = 16;
 constexpr int max_rounds_inexact = 4;  ///< on samples off the surface: later rounds only cost quality
 constexpr int max_perturbations = 2;   ///< rounds around the worst where nothing helps there

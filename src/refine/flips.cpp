@@ -67,7 +67,7 @@ class Flipper {
     const Vec3 &pa = position(a), &pb = position(b), &pc = position(c), &pd = position(d);
     if (cotangent_at(pc, pa, pb) + cotangent_at(pd, pa, pb) >= -1e-9) return false;
     const Vec3 cross1 = cross(pb - pa, pc - pa), cross2 = cross(pa - pb, pd - pb);
-    // A triangle without area, as three vertices on a straight crease make, has no say in where the others face.
+    // A triangle without area, as three vertices on a straight feature curve make, has no say in where the others face.
     const double least = 1e-9 * squared_norm(pb - pa);
     const Vec3 old1 = normalized(norm(cross1) > least ? cross1 : cross2);
     const Vec3 old2 = normalized(norm(cross2) > least ? cross2 : cross1);

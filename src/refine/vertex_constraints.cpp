@@ -12,7 +12,7 @@ namespace {
 
 struct CurvePoint {
   Vec3 place;
-  double arc = 0;  ///< length of the chain up to there
+  double arc = 0;  ///< length of the curve up to there
 };
 
 CurvePoint nearest_on(const FeatureCurve& curve, const Vec3& p) {
@@ -28,7 +28,7 @@ CurvePoint nearest_on(const FeatureCurve& curve, const Vec3& p) {
   return best;
 }
 
-/// Largest distance of the chain between two of its points from the chord; around a closed chain the shorter way.
+/// Largest distance of the curve between two of its points from the chord; around a closed curve the shorter way.
 double deviation_between(const FeatureCurve& curve, const Vec3& p, const Vec3& q) {
   const auto [s, t] = std::minmax({nearest_on(curve, p).arc, nearest_on(curve, q).arc});
   const bool around = curve.points.front() == curve.points.back() && 2 * (t - s) > curve.length();

@@ -1,5 +1,5 @@
 #pragma once
-/// What refinement must leave as it is: vertices and edges on creases.
+/// What refinement must leave as it is: vertices and edges on feature curves.
 
 #include <array>
 #include <cstdint>
@@ -10,22 +10,22 @@
 
 namespace evenmesh {
 
-/// Vertices at corners do not move, those on a crease move along it only, edges along it are not flipped.
+/// Vertices at corners do not move, those on a feature curve move along it only, edges along it are not flipped.
 struct VertexConstraints {
   static constexpr std::uint32_t free = 0xffffffffu, corner = 0xfffffffeu;
 
-  std::vector<std::uint32_t> curve;  ///< by vertex: free, corner, or the chain it lies on; empty: all are free
+  std::vector<std::uint32_t> curve;  ///< by vertex: free, corner, or the curve it lies on; empty: all are free
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< lower vertex first, sorted
   FeatureCurves features;
   double max_chordal_deviation =
-      0;  ///< of a crease over an edge along it, model units; beyond that vertices do not move apart
+      0;  ///< of a feature curve over an edge along it, model units; beyond that vertices do not move apart
 
   bool vertex(std::uint32_t v) const { return v < curve.size() && curve[v] != free; }
   bool at_corner(std::uint32_t v) const { return v < curve.size() && curve[v] == corner; }
   bool edge(std::uint32_t a, std::uint32_t b) const;
-  /// The point of v's crease that is nearest to p. @pre  v is on one
+  /// The point of v's feature curve that is nearest to p. @pre  v is on one
   Vec3 slide(std::uint32_t v, const Vec3& p) const;
-  /// How far the crease lies from the edges along it that end at v, at most.
+  /// How far the feature curve lies from the edges along it that end at v, at most.
   double chordal_deviation(const Mesh& mesh, std::uint32_t v, std::span<const std::uint32_t> neighbours) const;
   /// Sets the vertices of those triangles free.
   void release(const Mesh& mesh, std::span<const std::uint32_t> triangles);

@@ -201,6 +201,13 @@ Enclosure scaled(const Enclosure& a, double s) {
   return widened(p.lo, p.hi, p.may_be_nan);
 }
 
+Enclosure square_root(const Enclosure& a) {
+  const Domain d = restricted(a, 0, infinity);
+  if (d.empty) return anything;
+  return increasing(
+      d.inside, [](double v) { return std::sqrt(v); }, rounding, 0);
+}
+
 }  // namespace
 
 Enclosure enclose(double lo, double hi) {
@@ -225,12 +232,8 @@ Enclosure apply(const Node& node, const Enclosure& a, const Enclosure& b) {
       return squared(a);
     case Op::div:
       return over(a, b);
-    case Op::sqrt: {
-      const Domain d = restricted(a, 0, infinity);
-      return d.empty ? anything
-                     : increasing(
-                           d.inside, [](double v) { return std::sqrt(v); }, rounding, 0);
-    }
+    case Op::sqrt:
+      return square_root(a);
     case Op::sin:
       return wave(a, 0);
     case Op::cos:

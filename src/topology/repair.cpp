@@ -99,7 +99,8 @@ class Planner {
     asked_[a] = asked_[b] = 1;
   }
 
-  /// Far from all pinches, those under balls included, the grid does resolve the shape, however fine its features are.
+  /// Far from all ambiguous faces, those under balls included, the grid does resolve the shape, however fine its
+  /// features are.
   bool unresolved_near(const Vec3& p) const {
     const double reach = 3 * options_.edge;
     bool found = ambiguous_faces_.near(p, reach, [](std::uint32_t) { return true; });
@@ -136,7 +137,7 @@ class Planner {
   const BallIndex& balls_;
   const TopologyRepairOptions& options_;
   BallIndex new_balls_;
-  std::vector<char> planned_;  ///< pinches that have been seen to
+  std::vector<char> planned_;  ///< ambiguous faces that have been seen to
   std::vector<Cell> cells_;
   std::vector<char> asked_, grown_;
   TopologyRepair repair_;

@@ -20,13 +20,14 @@ struct TopologyRepair {
 struct TopologyRepairOptions {
   double edge = 0;            ///< wanted edge length, model units; balls start at half of it and end at one
   std::size_t given = 0;      ///< labels from here on are those of pieces: their seeds are not there yet
-  bool prefer_balls = false;  ///< wherever a pinch is not far
+  bool prefer_balls = false;  ///< wherever an ambiguous face is not far
   bool seeds_only = false;    ///< no more balls: divide cells down to single samples
 };
 
 /// A seed goes to the sample farthest from the centre of each defective cell. Where cells have shrunk to a few samples,
-/// or a pinch of the grid (find_ambiguous_faces) lies in them, more seeds cannot help: the topology there is an
-/// accident of the grid, and a ball makes it plain. A defect that meets a ball makes the ball grow. [Raster2Mesh §4.4]
+/// or an ambiguous face of the grid (find_ambiguous_faces) lies in them, more seeds cannot help: the topology there is
+/// an accident of the grid, and a ball makes it plain. A defect that meets a ball makes the ball grow. [Raster2Mesh
+/// §4.4]
 ///
 /// Cost: O(samples). Deterministic.
 TopologyRepair plan_topology_repair(const SampleSet& samples, std::span<const std::uint32_t> labels,

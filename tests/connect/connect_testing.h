@@ -19,7 +19,7 @@ inline SampleSet sampled_gallery(const std::string& name, std::size_t resolution
 
 inline std::vector<std::uint32_t> nearest_labels(const SampleSet& samples, const std::vector<Vec3>& seeds) {
   ExecutionContext context(2);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   std::vector<std::uint32_t> labels;
   evaluator.nearest(seeds, labels);
   return labels;

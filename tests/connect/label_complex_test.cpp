@@ -186,7 +186,7 @@ TEST(LabelComplex, FrayedBordersAreAManifoldOrTold) {
     for (std::uint64_t seed = 1; seed <= 12; ++seed)
       for (const double width : {0.5, 1.0, 2.0}) {
         const auto seeds = blue_noise_start(samples, samples.size() / 60, seed);
-        CellEvaluator evaluator(samples, context);
+        CpuCellEvaluator evaluator(samples, context);
         std::vector<NearestPair> pairs;
         evaluator.nearest_pairs(seeds, pairs);
         std::vector<std::uint32_t> labels(samples.size());

@@ -13,7 +13,7 @@ Vec3 random_step(Random& random) {
 /// One evaluator that has seen all earlier seeds, against one that sees these for the first time.
 void expect_as_fresh(CellEvaluator& kept, const SampleSet& samples, const std::vector<Vec3>& seeds) {
   evenmesh::ExecutionContext context(1);
-  CellEvaluator fresh(samples, context);
+  CpuCellEvaluator fresh(samples, context);
   CellSums one, other;
   kept.evaluate(seeds, one), fresh.evaluate(seeds, other);
   EXPECT_EQ(one.energy, other.energy);
@@ -32,7 +32,7 @@ TEST(Candidates, StayCompleteWhileSeedsMove) {
     // Steps in seed spacings: creeping, within margins, beyond them, leaps.
     for (const double step : {0.001, 0.03, 0.15, 0.6, 3.0}) {
       SCOPED_TRACE(step);
-      CellEvaluator kept(samples, context);
+      CpuCellEvaluator kept(samples, context);
       std::vector<Vec3> seeds = random_start(samples, 120, 1);
       Random random(9);
       for (int round = 0; round < 12; ++round) {
@@ -47,7 +47,7 @@ TEST(Candidates, StayCompleteWhenFewSeedsStray) {
   evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_torus(), 48);
   const double spacing = spacing_of(samples, 200);
-  CellEvaluator kept(samples, context);
+  CpuCellEvaluator kept(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 200, 2);
   Random random(4);
   for (int round = 0; round < 40; ++round) {
@@ -63,7 +63,7 @@ TEST(Candidates, StayCompleteWhenFewSeedsStray) {
 TEST(Candidates, FollowSeedsThatComeAndGo) {
   evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_icosphere(3), 40);
-  CellEvaluator kept(samples, context);
+  CpuCellEvaluator kept(samples, context);
   for (const std::size_t count : {100u, 101u, 100u, 1u, 2u, 400u, 3u}) {
     SCOPED_TRACE(count);
     expect_as_fresh(kept, samples, random_start(samples, count, count));

@@ -60,7 +60,7 @@ void expect_nearest(CellEvaluator& evaluator, const std::vector<Vec3>& points, c
 TEST(Cells, MassesAddUpToTheAreaAndCentroidsLieInTheBox) {
   evenmesh::ExecutionContext context(1);
   for (const SampleSet& samples : surfaces()) {
-    CellEvaluator evaluator(samples, context);
+    CpuCellEvaluator evaluator(samples, context);
     const auto seeds = perturbed_seeds(samples, 150, 0, 3);
     CellSums sums;
     evaluator.evaluate(seeds, sums);
@@ -85,7 +85,7 @@ TEST(Cells, MassesAddUpToTheAreaAndCentroidsLieInTheBox) {
 TEST(Cells, EnergyOfOneSeedIsTheSecondMoment) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(4), 40);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   CellSums sums;
   evaluator.evaluate(std::vector<Vec3>{{0, 0, 0}}, sums);
   EXPECT_NEAR(sums.energy, 4 * std::numbers::pi, 0.01 * 4 * std::numbers::pi);  // all at distance 1
@@ -98,7 +98,7 @@ TEST(Cells, EnergyOfOneSeedIsTheSecondMoment) {
 TEST(Cells, GradientAgreesWithFiniteDifferences) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(4), 64);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = relaxed_seeds(samples, 60);
   const double spacing = spacing_of(samples, seeds.size()), step = 0.01 * spacing;
   Random random(5);
@@ -134,7 +134,7 @@ TEST(Cells, NearestSeedsAreThoseOfTryingAll) {
   for (const SampleSet& samples : surfaces()) {
     const auto points = positions_of(samples);
     for (const std::size_t count : {1u, 2u, 3u, 7u, 60u, 400u}) {
-      CellEvaluator evaluator(samples, context);
+      CpuCellEvaluator evaluator(samples, context);
       const double spacing = spacing_of(samples, count);
       expect_nearest(evaluator, points, perturbed_seeds(samples, count, 0.05 * spacing, count));
       expect_nearest(evaluator, points, perturbed_seeds(samples, count, 2 * spacing, count));  // far from the surface
@@ -146,7 +146,7 @@ TEST(Cells, ListsStayCompleteWhileSeedsMove) {
   evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_torus(), 40);
   const auto points = positions_of(samples);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 120, 1);
   const double spacing = spacing_of(samples, seeds.size());
   Random random(11);
@@ -168,7 +168,7 @@ TEST(Cells, ListsStayCompleteWhileSeedsMove) {
 TEST(Cells, EquallyNearSeedsGiveTheLowerIndex) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(3), 32);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 40, 2);
   const std::size_t half = seeds.size();
   for (std::size_t i = 0; i < half; ++i) seeds.push_back(seeds[i]);
@@ -195,7 +195,7 @@ TEST(Cells, EquallyNearSeedsGiveTheLowerIndex) {
 TEST(Cells, BisectorDistanceIsThatOfThePlane) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_torus(), 32);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   const auto seeds = random_start(samples, 90, 4);
   std::vector<NearestPair> pairs;
   evaluator.nearest_pairs(seeds, pairs);
@@ -215,7 +215,7 @@ TEST(Cells, SameBitsForAnyNumberOfThreads) {
   std::vector<std::vector<std::uint32_t>> labels(3);
   for (unsigned t = 0; t < 3; ++t) {
     evenmesh::ExecutionContext context(t + 1);
-    CellEvaluator evaluator(samples, context);
+    CpuCellEvaluator evaluator(samples, context);
     with_threads(context, [&] {
       evaluator.evaluate(seeds, sums[t]);
       evaluator.nearest(seeds, labels[t]);
@@ -234,9 +234,9 @@ TEST(Cells, ResultsDoNotDependOnEarlierCalls) {
   const SampleSet samples = sampled(make_icosphere(3), 40);
   const auto seeds = random_start(samples, 200, 1);
   CellSums fresh, used;
-  CellEvaluator first(samples, context);
+  CpuCellEvaluator first(samples, context);
   first.evaluate(seeds, fresh);
-  CellEvaluator second(samples, context);
+  CpuCellEvaluator second(samples, context);
   for (int n = 0; n < 3; ++n) second.evaluate(perturbed_seeds(samples, 200, 0.01, 1), used);
   second.evaluate(random_start(samples, 77, 3), used);
   second.evaluate(seeds, used);
@@ -261,8 +261,8 @@ TEST(Cells, MassesAreWeightsAndFootprintsAreAreas) {
   heavy.total_weight = 256 * even.total_area;
   const auto seeds = perturbed_seeds(even, 150, 0.01, 3);
   CellSums sums, heavy_sums;
-  CellEvaluator(even, context).evaluate(seeds, sums);
-  CellEvaluator(heavy, context).evaluate(seeds, heavy_sums);
+  CpuCellEvaluator(even, context).evaluate(seeds, sums);
+  CpuCellEvaluator(heavy, context).evaluate(seeds, heavy_sums);
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     ASSERT_EQ(heavy_sums.mass[i], 256 * sums.mass[i]);
     ASSERT_EQ(heavy_sums.moment[i], 256 * sums.moment[i]);
@@ -275,7 +275,7 @@ TEST(Cells, MassesAddUpToTheWeight) {
   const SampleSet samples = weighted(sampled(make_torus(), 48), [](const Vec3& p) { return 1 + 4 * (p.x > 0); });
   const auto seeds = perturbed_seeds(samples, 150, 0, 3);
   CellSums sums;
-  CellEvaluator(samples, context).evaluate(seeds, sums);
+  CpuCellEvaluator(samples, context).evaluate(seeds, sums);
   double mass = 0;
   for (const double m : sums.mass) mass += m;
   EXPECT_NEAR(mass, samples.total_weight, 1e-5 * samples.total_weight);
@@ -285,7 +285,7 @@ TEST(Cells, MassesAddUpToTheWeight) {
 TEST(Cells, CancelTakesEffect) {
   const SampleSet samples = sampled(make_icosphere(2), 24);
   evenmesh::ExecutionContext context(1);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   context.cancel();
   CellSums sums;
   EXPECT_THROW(evaluator.evaluate(random_start(samples, 20, 1), sums), Cancelled);

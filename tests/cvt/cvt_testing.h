@@ -34,7 +34,7 @@ inline std::vector<Vec3> perturbed_seeds(const SampleSet& samples, std::size_t c
 
 inline std::vector<Vec3> relaxed_seeds(const SampleSet& samples, std::size_t count, std::size_t evaluations = 40) {
   ExecutionContext context(1);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   return relax_seeds(evaluator, count, {.evaluations = evaluations}, context).seeds.positions;
 }
 

@@ -8,7 +8,7 @@ namespace {
 TEST(Optimize, LowersTheEnergyStepByStep) {
   evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_torus(), 64);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   Seeds seeds = random_start(samples, 120, 1);
   CellSums sums;
   evaluator.evaluate(seeds, sums);
@@ -27,7 +27,7 @@ TEST(Optimize, LowersTheEnergyStepByStep) {
 TEST(Optimize, LloydLowersTheEnergyInEveryStep) {
   evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_icosphere(4), 64);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   Seeds seeds = random_start(samples, 100, 1);
   const auto ratios = optimize(evaluator, seeds, {.lloyd = true, .evaluations = 40}, context).ratios;
   ASSERT_EQ(ratios.size(), 40u);
@@ -38,7 +38,7 @@ TEST(Optimize, LloydLowersTheEnergyInEveryStep) {
 TEST(Optimize, QuasiNewtonBeatsLloydForTheSameWork) {
   evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_icosphere(4), 64);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   double ratio[2];
   for (const bool lloyd : {false, true}) {
     Seeds seeds = random_start(samples, 100, 1);
@@ -51,7 +51,7 @@ TEST(Optimize, QuasiNewtonBeatsLloydForTheSameWork) {
 TEST(Optimize, StopsWhereNothingMovesAnyMore) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(3), 40);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   Seeds seeds = random_start(samples, 30, 1);
   optimize(evaluator, seeds, {.evaluations = 200, .tolerance = 1e-3}, context);
   const std::vector<Vec3> rest = seeds.positions;
@@ -63,7 +63,7 @@ TEST(Optimize, StopsWhereNothingMovesAnyMore) {
 TEST(Optimize, NoEvaluationsLeaveTheSeedsAlone) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(2), 24);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   Seeds seeds = random_start(samples, 20, 1);
   const std::vector<Vec3> before = seeds.positions;
   EXPECT_TRUE(optimize(evaluator, seeds, {.evaluations = 0}, context).ratios.empty());
@@ -75,7 +75,7 @@ TEST(Optimize, NoEvaluationsLeaveTheSeedsAlone) {
 TEST(Optimize, FixedSeedsStay) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_torus(), 60);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   Seeds seeds = random_start(samples, 60, 1);
   seeds.fixed.resize(7);
   const std::vector<Vec3> before = seeds.positions;
@@ -91,7 +91,7 @@ TEST(Optimize, FixedSeedsStay) {
 TEST(Optimize, SeedsWithoutSamplesDoNotHarm) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(3), 40);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   Seeds seeds = random_start(samples, 40, 1);
   for (int n = 0; n < 5; ++n) seeds.positions.push_back(seeds.positions[static_cast<std::size_t>(n)]);  // twins
   for (int n = 0; n < 5; ++n) seeds.positions.push_back({40.0 + n, 30, 20});  // far away, nearest to nothing
@@ -102,7 +102,7 @@ TEST(Optimize, SeedsWithoutSamplesDoNotHarm) {
 TEST(Optimize, CancelStopsIt) {
   const SampleSet samples = sampled(make_icosphere(2), 24);
   evenmesh::ExecutionContext context(1);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   Seeds seeds = random_start(samples, 20, 1);
   context.cancel();
   EXPECT_THROW(optimize(evaluator, seeds, {}, context), Cancelled);

@@ -12,7 +12,7 @@ TEST(Balance, ConvergedRatioIsNearThatOfHexagons) {
   const Mesh meshes[] = {make_icosphere(5), make_torus(1, 0.4, 96, 48), make_box({1, 1, 0.4})};
   for (const Mesh& mesh : meshes) {
     const SampleSet samples = sampled(mesh, 110, 2);
-    CellEvaluator evaluator(samples, context);
+    CpuCellEvaluator evaluator(samples, context);
     const RelaxResult result = relax_seeds(evaluator, 400, {.evaluations = 60}, context);
     EXPECT_LT(result.energy_ratio, 1.03);
     EXPECT_GE(result.energy_ratio, 0.93);  // edges and curvature fold cells, which lowers it a little
@@ -23,7 +23,7 @@ TEST(Balance, GivesTheCountFromEveryStart) {
   evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_torus(), 80, 2);
   const SurfaceQuery surface(make_torus());
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   for (const SeedStart start : {SeedStart::random, SeedStart::blue_noise, SeedStart::coarse_to_fine})
     for (const bool lloyd : {false, true})
       for (const std::size_t count : {4u, 5u, 311u}) {
@@ -44,7 +44,7 @@ TEST(Balance, ManyLevelsGiveTheCount) {
                          merged(make_icosphere(3), translated(make_icosphere(3, 0.3), {1.5, 0, 0}))};
   for (const Mesh& mesh : meshes) {
     const SampleSet samples = sampled(mesh, 150, 2);
-    CellEvaluator evaluator(samples, context);
+    CpuCellEvaluator evaluator(samples, context);
     for (const std::size_t count : {1203u, 1500u}) {
       const RelaxResult result = relax_seeds(evaluator, count, {.evaluations = 8}, context);
       EXPECT_EQ(result.seeds.size(), count);
@@ -58,7 +58,7 @@ TEST(Balance, SameBitsForAnyNumberOfThreads) {
   std::vector<RelaxResult> results;
   for (unsigned threads = 1; threads <= 3; ++threads) {
     evenmesh::ExecutionContext context(threads);
-    CellEvaluator evaluator(samples, context);
+    CpuCellEvaluator evaluator(samples, context);
     results.push_back(with_threads(context, [&] { return relax_seeds(evaluator, 1300, {.evaluations = 6}, context); }));
   }
   for (const RelaxResult& result : results) {
@@ -73,7 +73,7 @@ TEST(Balance, DensityGivesCellsTheirShare) {
   const SampleSet samples = weigh_by_density(
                                 sampled(make_icosphere(5), 110), [](const Vec3& p) { return 5 + 3 * p.z; }, context)
                                 .samples;
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   const std::size_t count = 800;
   const RelaxResult result = relax_seeds(evaluator, count, {}, context);
   EXPECT_NEAR(result.energy_ratio, 1, 0.04) << "as without a density";
@@ -90,7 +90,7 @@ TEST(Balance, DensityGivesCellsTheirShare) {
 TEST(Balance, AnnealingDoesNotRaiseTheEnergyMuch) {
   evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_icosphere(4), 64, 2);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   const RelaxOptions plain{.start = SeedStart::random, .evaluations = 30};
   RelaxOptions annealed = plain;
   annealed.annealing_rounds = 4;
@@ -101,7 +101,7 @@ TEST(Balance, AnnealingDoesNotRaiseTheEnergyMuch) {
 TEST(Balance, RefusesWhatCannotBeMet) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(1), 10);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   EXPECT_THROW(relax_seeds(evaluator, 3, {}, context), InvalidInput);
   EXPECT_THROW(relax_seeds(evaluator, samples.size() + 1, {}, context), InvalidInput);
   EXPECT_EQ(relax_seeds(evaluator, samples.size() / 4, {.evaluations = 2}, context).seeds.size(), samples.size() / 4);
@@ -110,7 +110,7 @@ TEST(Balance, RefusesWhatCannotBeMet) {
 TEST(Balance, CancelStopsIt) {
   const SampleSet samples = sampled(make_icosphere(2), 32);
   evenmesh::ExecutionContext context(1);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   context.cancel();
   EXPECT_THROW(relax_seeds(evaluator, 50, {}, context), Cancelled);
 }

@@ -57,7 +57,7 @@ TEST(Starts, BlueNoiseKeepsItsDistance) {
 TEST(Starts, SplittingQuadruplesRegularSeeds) {
   evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled(make_icosphere(5), 160, 2);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   const std::vector<Vec3> seeds = relaxed_seeds(samples, 200);
   const std::vector<Vec3> middles = neighbour_middles(evaluator, seeds, context);
   EXPECT_NEAR(static_cast<double>(middles.size()), 3 * 200 - 6, 8);  // Euler: edges of a triangulated sphere
@@ -74,7 +74,7 @@ TEST(Starts, SplittingQuadruplesRegularSeeds) {
 TEST(Starts, AdjustCountMeetsAnyCount) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_torus(), 60);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   const std::vector<Vec3> seeds = random_start(samples, 100, 3);
   for (const std::size_t count : {4u, 50u, 99u, 100u, 101u, 130u, 200u, 450u}) {
     Seeds adjusted = seeds;
@@ -90,7 +90,7 @@ TEST(Starts, AdjustCountMeetsAnyCount) {
 TEST(Starts, AdjustCountMeetsTheCountWithEmptyCells) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_torus(), 60);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = random_start(samples, 50, 3);
   for (std::size_t i = 0; i < 50; ++i) seeds.push_back(seeds[i]);  // the twin of every seed owns nothing
   for (const std::size_t count : {60u, 101u, 150u, 180u, 260u}) {
@@ -103,7 +103,7 @@ TEST(Starts, AdjustCountMeetsTheCountWithEmptyCells) {
 TEST(Starts, AdjustCountHelpsTheHeaviestAndTakesTheLightest) {
   evenmesh::ExecutionContext context(1);
   const SampleSet samples = sampled(make_icosphere(4), 60);
-  CellEvaluator evaluator(samples, context);
+  CpuCellEvaluator evaluator(samples, context);
   std::vector<Vec3> seeds = relaxed_seeds(samples, 100);
   const Vec3 crowded = seeds[10] + Vec3{0.01, 0.01, 0};
   seeds.push_back(crowded);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "evenmesh/solid.h"
+#include "pipeline/kernels.h"
 #include "pipeline/pipeline_testing.h"
 #include "pipeline/report.h"
 
@@ -45,7 +46,7 @@ TEST(Stages, IntersectionsOfAMeshThatIsNotTwoManifoldAreCounted) {
   const std::size_t pairs = self_intersections(draft.mesh).size();
   ASSERT_GT(pairs, 0u);
   StageTimer timer(ExecutionContext::silent());
-  const auto sampler = make_sampler(shape_from_mesh(draft.mesh), {}, timer, ExecutionContext::silent());
+  const auto sampler = make_sampler(shape_from_mesh(draft.mesh), {}, {}, timer, ExecutionContext::silent());
   const MeshOptions centroids{.placement = Placement::centroid};
   EXPECT_EQ(refine(draft, {}, *sampler, centroids, timer, ExecutionContext::silent()).self_intersections, pairs);
 }
@@ -61,6 +62,44 @@ TEST(Stages, CrossingsThatTheGridCannotHoldAreCountedAndSaid) {
   EXPECT_GT(report.unresolved, 500u);
   EXPECT_TRUE(has_finding(report, FindingCode::crossings_unresolved));
   EXPECT_EQ(meshed(gallery_shape("cube"), {.vertices = 500}).report.unresolved, 0u);
+}
+
+/// Kernels that hand on to the CPU, and count.
+struct Counting final : RayKernel, NarrowBandKernel, CellKernel, ExtractionKernel {
+  SampleSet sample(const Shape& shape, const Grid& grid, ExecutionContext& context) const override {
+    ++sampled;
+    return sample_shape(shape, grid, context);
+  }
+  NarrowBand build(const SiteVoxels& sites, unsigned reach, ExecutionContext& context) const override {
+    ++built;
+    return build_narrow_band(sites, reach, context);
+  }
+  std::unique_ptr<CellEvaluator> evaluator(const SampleSet& samples, ExecutionContext& context) const override {
+    ++evaluators;
+    return std::make_unique<CpuCellEvaluator>(samples, context);
+  }
+  LabelComplex connect(const SampleSet& samples, std::vector<std::uint32_t>& labels, const Seeds& seeds,
+                       ExecutionContext& context) const override {
+    ++connected;
+    return connect_labels(samples, labels, seeds, context);
+  }
+  mutable int sampled = 0, built = 0, evaluators = 0, connected = 0;
+};
+
+TEST(Stages, KernelsTakeOverWhatADeviceCanDo) {
+  const Counting counting;
+  const Kernels kernels{&counting, &counting, &counting, &counting};
+  const Shape torus = gallery_shape("torus");
+  for (const Method method : {Method::raster, Method::shell}) {
+    const MeshOptions options{.vertices = 600, .method = method};
+    Artifacts none;
+    const MeshResult result = mesh_with(kernels, torus, options, ExecutionContext::silent(), none);
+    EXPECT_TRUE(same_mesh(result.mesh, meshed(torus, options).mesh));
+  }
+  EXPECT_GT(counting.sampled, 0);
+  EXPECT_GT(counting.built, 0);
+  EXPECT_GT(counting.evaluators, 0);
+  EXPECT_GT(counting.connected, 0);
 }
 
 TEST(Stages, SimplifyKeepsWhatIsFixed) {

@@ -64,7 +64,7 @@ struct CellMesh {
 inline CellMesh mesh_of_cells(const Shape& shape, std::size_t resolution, std::size_t count) {
   ExecutionContext context(2);
   CellMesh result{sample_shape(shape, make_grid(shape.bounds, resolution), context), {}, {}};
-  CellEvaluator evaluator(result.samples, context);
+  CpuCellEvaluator evaluator(result.samples, context);
   result.mesh.vertices = relax_seeds(evaluator, count, {.evaluations = 40}, context).seeds.positions;
   evaluator.nearest(result.mesh.vertices, result.labels);
   const LabelComplex complex = connect_labels(result.samples, result.labels, result.mesh.vertices, context);

@@ -1,4 +1,4 @@
-/// What stands for the room where evenmesh is built without OpenGL.
+/// What stands for the module where evenmesh is built without OpenGL.
 
 #include "evenmesh/glsl.h"
 

@@ -18,11 +18,11 @@ using Names = std::set<std::string>;
 
 const fs::path root = EVENMESH_SOURCE_DIR;
 
-/// Rooms in the order of the pipeline; each sees itself and those before it.
+/// Modules in the order of the pipeline; each sees itself and those before it.
 const std::vector<std::string> pipeline{"core",     "geometry", "grid",    "shape",    "sample", "band",
                                         "features", "cvt",      "connect", "topology", "refine", "pipeline"};
 
-/// Rooms beside the pipeline, and what they see besides themselves.
+/// Modules beside the pipeline, and what they see besides themselves.
 const std::map<std::string, Names> beside{
     {"measure", {"core", "geometry"}},
     {"io", {"core", "geometry", "shape"}},
@@ -32,7 +32,7 @@ const std::map<std::string, Names> beside{
     {"view", {"core", "geometry", "measure"}},
 };
 
-/// Public headers, and the room from which on they may be included.
+/// Public headers, and the module from which on they may be included.
 const std::map<std::string, std::string> public_headers{
     {"error.h", "core"},
     {"execution_context.h", "core"},
@@ -59,33 +59,33 @@ const std::map<std::string, std::string> public_headers{
     {"set_operation.h", "jobs"},
 };
 
-Names visible_from(const std::string& room) {
-  if (const auto found = beside.find(room); found != beside.end()) {
+Names visible_from(const std::string& module) {
+  if (const auto found = beside.find(module); found != beside.end()) {
     Names names = found->second;
-    names.insert(room);
+    names.insert(module);
     return names;
   }
   Names names;
   for (const std::string& lower : pipeline) {
     names.insert(lower);
-    if (lower == room) break;
+    if (lower == module) break;
   }
   // The loop that runs the stages also measures what came out.
-  if (room == "pipeline") names.insert("measure");
+  if (module == "pipeline") names.insert("measure");
   return names;
 }
 
-bool may_include_public(const std::string& room, const std::string& header) {
+bool may_include_public(const std::string& module, const std::string& header) {
   const auto found = public_headers.find(header);
   if (found == public_headers.end()) return false;
-  // Reports are about the pipeline's result: they see its public header, not its room.
-  if (room == "view" && header == "mesh_shape.h") return true;
+  // Reports are about the pipeline's result: they see its public header, not its module.
+  if (module == "view" && header == "mesh_shape.h") return true;
   // What every face needs is made of public functions.
   const std::set<std::string> rooms_of_jobs{"measure", "io", "scene", "gl", "pipeline"};
-  if (room == "jobs" && rooms_of_jobs.contains(found->second)) return true;
+  if (module == "jobs" && rooms_of_jobs.contains(found->second)) return true;
   // Scenes name shaders; what runs them stays behind the public header.
-  if (room == "scene" && (header == "glsl.h" || header == "raster.h")) return true;
-  return visible_from(room).contains(found->second);
+  if (module == "scene" && (header == "glsl.h" || header == "raster.h")) return true;
+  return visible_from(module).contains(found->second);
 }
 
 std::vector<fs::path> sources_under(const fs::path& folder) {
@@ -109,22 +109,22 @@ std::vector<std::string> includes_of(const fs::path& file) {
   return names;
 }
 
-/// "room/file.h" → "room", and "" for anything that is not ours.
-std::string room_of_include(const std::string& name) {
+/// "module/file.h" → "module", and "" for anything that is not ours.
+std::string module_of_include(const std::string& name) {
   const std::string first = name.substr(0, name.find('/'));
   return name.find('/') != std::string::npos && fs::is_directory(root / "src" / first) ? first : "";
 }
 
-TEST(Layering, RoomsSeeOnlyLowerRooms) {
+TEST(Layering, ModulesSeeOnlyLowerOnes) {
   for (const fs::path& file : sources_under(root / "src")) {
-    const std::string room = fs::relative(file, root / "src").begin()->string();
-    const bool known = beside.contains(room) || std::count(pipeline.begin(), pipeline.end(), room) > 0;
-    ASSERT_TRUE(known) << room << " is not a room of docs/architecture.md";
+    const std::string module = fs::relative(file, root / "src").begin()->string();
+    const bool known = beside.contains(module) || std::count(pipeline.begin(), pipeline.end(), module) > 0;
+    ASSERT_TRUE(known) << module << " is not a module of docs/architecture.md";
     for (const std::string& name : includes_of(file)) {
       if (name.starts_with("evenmesh/")) {
-        EXPECT_TRUE(may_include_public(room, name.substr(9))) << file << " includes " << name;
-      } else if (const std::string other = room_of_include(name); !other.empty()) {
-        EXPECT_TRUE(visible_from(room).contains(other)) << file << " includes " << name;
+        EXPECT_TRUE(may_include_public(module, name.substr(9))) << file << " includes " << name;
+      } else if (const std::string other = module_of_include(name); !other.empty()) {
+        EXPECT_TRUE(visible_from(module).contains(other)) << file << " includes " << name;
       }
       EXPECT_EQ(name.find(".."), std::string::npos) << file << " includes " << name;
     }
@@ -135,10 +135,10 @@ TEST(Layering, PublicHeadersIncludeOnlyPublicHeadersAndTheStandardLibrary) {
   for (const fs::path& file : sources_under(root / "include")) {
     const std::string self = file.filename();
     ASSERT_TRUE(public_headers.contains(self)) << self << " is not in the table of this test";
-    const std::string room = public_headers.at(self);
+    const std::string module = public_headers.at(self);
     for (const std::string& name : includes_of(file)) {
       if (name.starts_with("evenmesh/")) {
-        EXPECT_TRUE(may_include_public(room, name.substr(9))) << self << " includes " << name;
+        EXPECT_TRUE(may_include_public(module, name.substr(9))) << self << " includes " << name;
       } else {
         EXPECT_EQ(name.find_first_of("./"), std::string::npos) << self << " includes " << name;
       }
@@ -150,7 +150,7 @@ TEST(Layering, TheProgramAndTheExamplesSeeOnlyPublicHeaders) {
   for (const char* folder : {"apps", "examples"}) {
     for (const fs::path& file : sources_under(root / folder)) {
       for (const std::string& name : includes_of(file)) {
-        EXPECT_EQ(room_of_include(name), "") << file << " includes " << name;
+        EXPECT_EQ(module_of_include(name), "") << file << " includes " << name;
         EXPECT_EQ(name.find("src/"), std::string::npos) << file << " includes " << name;
         if (name.starts_with("evenmesh/")) {
           EXPECT_TRUE(public_headers.contains(name.substr(9))) << file << " includes " << name;
