@@ -100,7 +100,7 @@ HWY_INLINE void add_parts(D d, const Parts& parts, std::size_t c, float* lanes) 
   for (int a = 0; a < 3; ++a) add(parts.moment1[a], parts.moment2[a], at + (a + 1) * max_lanes);
 }
 
-double EvaluateBlock(const BlockView& b, float* lane_sums, const BlockSums& sums) {
+double evaluate_block(const BlockView& b, float* lane_sums, const BlockSums& sums) {
   const D d;
   const hn::RebindToSigned<D> di;
   const std::size_t lanes = hn::Lanes(d);
@@ -160,8 +160,8 @@ double EvaluateBlock(const BlockView& b, float* lane_sums, const BlockSums& sums
   return sum_lanes(d, energy);
 }
 
-std::size_t KeepNearSeeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed,
-                          std::size_t count) {
+std::size_t keep_near_seeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed,
+                            std::size_t count) {
   constexpr std::size_t judges = 4;
   if (count <= 2) return count;
   const D d;
@@ -218,8 +218,8 @@ std::size_t KeepNearSeeds(const BlockBox& box, const float* margin, float* x, fl
   return kept;
 }
 
-SeedsInReach FindSeedsInReach(const float* center, float radius, const float* x, const float* y, const float* z,
-                              const float* margin, std::size_t count, float* scratch, std::uint32_t* hits) {
+SeedsInReach find_seeds_in_reach(const float* center, float radius, const float* x, const float* y, const float* z,
+                                 const float* margin, std::size_t count, float* scratch, std::uint32_t* hits) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   const V cx = hn::Set(d, center[0]), cy = hn::Set(d, center[1]), cz = hn::Set(d, center[2]),
@@ -256,7 +256,7 @@ SeedsInReach FindSeedsInReach(const float* center, float radius, const float* x,
   return found;
 }
 
-void NearestInBlock(const BlockView& b, std::uint32_t* nearest) {
+void nearest_in_block(const BlockView& b, std::uint32_t* nearest) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   const auto to_int = hn::RebindToSigned<D>();
@@ -277,7 +277,7 @@ void NearestInBlock(const BlockView& b, std::uint32_t* nearest) {
   }
 }
 
-void NearestPairInBlock(const BlockView& b, std::uint32_t* first, std::uint32_t* second, float* distance) {
+void nearest_pair_in_block(const BlockView& b, std::uint32_t* first, std::uint32_t* second, float* distance) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN float index1[8], index2[8], gap[8];
@@ -303,29 +303,29 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace evenmesh {
 
-HWY_EXPORT(EvaluateBlock);
-HWY_EXPORT(FindSeedsInReach);
-HWY_EXPORT(KeepNearSeeds);
-HWY_EXPORT(NearestInBlock);
-HWY_EXPORT(NearestPairInBlock);
+HWY_EXPORT(evaluate_block);
+HWY_EXPORT(find_seeds_in_reach);
+HWY_EXPORT(keep_near_seeds);
+HWY_EXPORT(nearest_in_block);
+HWY_EXPORT(nearest_pair_in_block);
 
 double evaluate_block(const BlockView& block, float* lane_sums, const BlockSums& sums) {
-  return HWY_DYNAMIC_DISPATCH(EvaluateBlock)(block, lane_sums, sums);
+  return HWY_DYNAMIC_DISPATCH(evaluate_block)(block, lane_sums, sums);
 }
 std::size_t keep_near_seeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed,
                             std::size_t count) {
   if (count > 256) return count;  // a crowd of seeds in one place: all of them are tried
-  return HWY_DYNAMIC_DISPATCH(KeepNearSeeds)(box, margin, x, y, z, seed, count);
+  return HWY_DYNAMIC_DISPATCH(keep_near_seeds)(box, margin, x, y, z, seed, count);
 }
 SeedsInReach seeds_in_reach(const float center[3], float radius, const float* x, const float* y, const float* z,
                             const float* margin, std::size_t count, float* scratch, std::uint32_t* hits) {
-  return HWY_DYNAMIC_DISPATCH(FindSeedsInReach)(center, radius, x, y, z, margin, count, scratch, hits);
+  return HWY_DYNAMIC_DISPATCH(find_seeds_in_reach)(center, radius, x, y, z, margin, count, scratch, hits);
 }
 void nearest_in_block(const BlockView& block, std::uint32_t* nearest) {
-  HWY_DYNAMIC_DISPATCH(NearestInBlock)(block, nearest);
+  HWY_DYNAMIC_DISPATCH(nearest_in_block)(block, nearest);
 }
 void nearest_pair_in_block(const BlockView& block, std::uint32_t* first, std::uint32_t* second, float* distance) {
-  HWY_DYNAMIC_DISPATCH(NearestPairInBlock)(block, first, second, distance);
+  HWY_DYNAMIC_DISPATCH(nearest_pair_in_block)(block, first, second, distance);
 }
 
 }  // namespace evenmesh
