@@ -5,7 +5,7 @@
 # Every file still includes what it uses.
 option(EVENMESH_PRECOMPILE "precompile common headers, compile the program as few files" ON)
 
-set(precompiled_rooms <algorithm> <array> <bit> <cmath> <cstdint> <functional> <limits> <map> <memory> <numbers> <optional>
+set(precompiled_modules <algorithm> <array> <bit> <cmath> <cstdint> <functional> <limits> <map> <memory> <numbers> <optional>
     <span> <string> <string_view> <unordered_map> <utility> <variant> <vector> <tbb/info.h> <tbb/parallel_for.h>
     <tbb/parallel_sort.h> <tbb/task_arena.h> <fmt/format.h>)
 set(precompiled_tests <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <map> <memory> <numbers> <optional>
