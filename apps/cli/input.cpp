@@ -112,9 +112,11 @@ void check_input(const InputArguments& input, const InputCount& count) {
   }
   const bool shader = std::any_of(input.positional.begin(), input.positional.end(),
                                   [](const std::string& name) { return kind_of_input(name) == InputKind::shader; });
-  if (input.expressions.empty() && !shader && !input.options.definitions.empty()) {
+  const bool takes_parameters = shader || input.density || !input.expressions.empty();
+  if (!takes_parameters && !input.options.definitions.empty()) {
     throw InvalidInput(
-        "-D gives a parameter of an expression or a shader; it needs an expression after -e, or a .glsl file");
+        "-D gives a parameter of an expression or a shader; it needs an expression after -e or --density, or a .glsl "
+        "file");
   }
   if (!shader && has_shader_options(input.options)) {
     throw InvalidInput("--entry, --lipschitz and --level are for shaders; no input is a .glsl file");

@@ -22,6 +22,7 @@ struct InputArguments {
   InputOptions options;                  ///< --entry, --lipschitz, --level, --gl-device, --bounds, and -D
   std::vector<std::string> raster;       ///< --raster: vertex and fragment shader, files or "default"
   std::size_t raster_vertices = 0;       ///< --raster-vertices
+  bool density = false;                  ///< --density is an expression, which -D gives parameters, too
 };
 
 /// How many inputs a command takes.

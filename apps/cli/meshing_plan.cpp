@@ -76,6 +76,7 @@ void read_input_options(MeshingArguments& a) {
   for (const std::string& text : a.definitions) a.input.options.definitions.insert(definition("-D", text));
   if (!a.raster_vertices.empty())
     a.input.raster_vertices = whole_number("--raster-vertices", a.raster_vertices, 3, 2'147'483'647);
+  a.input.density = a.density != "uniform";
   a.input.options.entry = a.entry;
   a.input.options.device = a.gl_device;
   if (!a.lipschitz.empty()) {

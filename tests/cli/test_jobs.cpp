@@ -42,6 +42,14 @@ TEST_F(Jobs, MeshesAnExpressionWithParameters) {
   EXPECT_NEAR(figures.at("area").get<double>(), 50.3, 2.5);
 }
 
+TEST_F(Jobs, DensitiesTakeParametersWhateverIsMeshed) {
+  const Words words{"mesh", "gallery:sphere", "-n", "300", "-D", "k=3", "-o", "s.ply", "-q"};
+  EXPECT_EQ(run(words).status, 2) << "nothing takes k";
+  Words dense = words;
+  dense.insert(dense.end(), {"--density", "1 + k*x^2"});
+  EXPECT_EQ(run(dense).status, 0);
+}
+
 TEST_F(Jobs, WritesEveryFormat) {
   for (const char* format : {"ply", "obj", "stl", "off", "glb", "3mf"}) {
     const std::string name = std::string("s.") + format;
