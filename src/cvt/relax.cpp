@@ -43,9 +43,9 @@ class Pyramid {
   std::vector<std::unique_ptr<CellEvaluator>> evaluators_;
 };
 
-class Balance {
+class Relaxation {
  public:
-  Balance(CellEvaluator& finest, std::size_t count, const RelaxOptions& options, ExecutionContext& context)
+  Relaxation(CellEvaluator& finest, std::size_t count, const RelaxOptions& options, ExecutionContext& context)
       : count_(count),
         options_(options),
         context_(context),
@@ -172,7 +172,7 @@ RelaxResult relax_seeds(CellEvaluator& evaluator, std::size_t count, const Relax
   if (samples.size() < count)
     throw InvalidInput(
         fmt::format("{} vertices need more than {} samples: raise the resolution", count, samples.size()));
-  return Balance(evaluator, count, options, context).result();
+  return Relaxation(evaluator, count, options, context).result();
 }
 
 }  // namespace evenmesh
