@@ -1,4 +1,5 @@
-// No fused multiply-add and eight lanes wherever there are that many: the same bits on AVX2 and on AVX-512.
+// The same bits on every processor: no fused multiply-add, and sums over eight logical lanes. Lane l adds the samples
+// l, l + 8, l + 16 …, whether a vector has eight lanes, four, or one.
 #include "cvt/cell_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -15,7 +16,7 @@ constexpr std::size_t max_candidates = 256;
 constexpr float far_away = 1e30f;
 constexpr std::size_t max_lanes = 8;
 
-using D = hn::CappedTag<float, 8>;
+using D = hn::CappedTag<float, max_lanes>;
 using V = hn::Vec<D>;
 
 struct Nearest2 {
@@ -43,16 +44,17 @@ HWY_INLINE Nearest2 nearest_two(D d, const BlockView& b, V x, V y, V z) {
   return n;
 }
 
-/// Sum of the lanes in one fixed order.
-HWY_INLINE float sum_lanes(D d, V v) {
-  HWY_ALIGN float lane[8] = {};
-  hn::Store(v, d, lane);
+/// Sum of the eight lanes in one fixed order.
+HWY_INLINE float sum_lanes(const float* lane) {
   return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
 }
 
 /// Values i… of an array that ends at `end`; lanes behind the end are zero.
 HWY_INLINE V load(D d, const float* from, std::size_t i, std::size_t end) {
-  return end - i >= hn::Lanes(d) ? hn::LoadU(d, from + i) : hn::MaskedLoad(hn::FirstN(d, end - i), d, from + i);
+  if (end - i >= hn::Lanes(d)) return hn::LoadU(d, from + i);
+  HWY_ALIGN float rest[max_lanes] = {};
+  for (std::size_t l = 0; l < end - i; ++l) rest[l] = from[i + l];
+  return hn::Load(d, rest);
 }
 
 /// Values of a small table by lane: one permutation when the table fits a vector.
@@ -77,7 +79,7 @@ HWY_INLINE std::uint32_t present(Index first, Index second) {
   const hn::RebindToUnsigned<D> du;
   const auto one = hn::Set(du, 1u);
   auto bits = hn::Or(hn::Shl(one, hn::BitCast(du, first)), hn::Shl(one, hn::BitCast(du, second)));
-  HWY_ALIGN std::uint32_t lane[8] = {};
+  HWY_ALIGN std::uint32_t lane[max_lanes] = {};
   hn::Store(bits, du, lane);
   return (lane[0] | lane[1]) | (lane[2] | lane[3]) | ((lane[4] | lane[5]) | (lane[6] | lane[7]));
 }
@@ -88,7 +90,7 @@ struct Parts {
   V mass1, mass2, moment1[3], moment2[3];
 };
 
-/// Adds to the sums of candidate c, lane by lane.
+/// Adds to the sums of candidate c, lane by lane. @param lanes  those of candidate 0, from the vector's first lane on
 HWY_INLINE void add_parts(D d, const Parts& parts, std::size_t c, float* lanes) {
   const V index = hn::Set(d, static_cast<float>(c));
   const auto is1 = hn::Eq(parts.first, index), is2 = hn::Eq(parts.second, index);
@@ -106,7 +108,7 @@ double evaluate_block(const BlockView& b, float* lane_sums, const BlockSums& sum
   const std::size_t lanes = hn::Lanes(d);
   const bool few = b.seeds <= 32;
   const Table seed[3] = {{d, b.seed_x, b.seeds}, {d, b.seed_y, b.seeds}, {d, b.seed_z, b.seeds}};
-  V energy = hn::Zero(d);
+  HWY_ALIGN float energy[max_lanes] = {};
   for (std::size_t i = 0; i < lane_sums_per_seed * b.seeds; i += lanes) hn::StoreU(hn::Zero(d), d, lane_sums + i);
   // The two nearest seeds of each sample, and what each of them gets of its footprint. The profile of a footprint
   // across the bisector is 3/(4R)·(1 − t²/R²), the projection of an isotropic density: F and its gradient agree.
@@ -134,7 +136,9 @@ double evaluate_block(const BlockView& b, float* lane_sums, const BlockSums& sum
     const V shift = hn::Mul(w, hn::Mul(moment, q));
     const V p2 = hn::Add(hn::Mul(p[0], p[0]), hn::Add(hn::Mul(p[1], p[1]), hn::Mul(p[2], p[2])));
     const V gain = hn::Mul(hn::Add(reach, reach), hn::Sub(moment, hn::Mul(u, share)));
-    energy = hn::Add(energy, hn::Mul(w, hn::Sub(hn::Add(n.distance_first, p2), gain)));
+    const std::size_t first_lane = i % max_lanes;
+    const V part = hn::Mul(w, hn::Sub(hn::Add(n.distance_first, p2), gain));
+    hn::Store(hn::Add(hn::Load(d, energy + first_lane), part), d, energy + first_lane);
     Parts parts{n.first, n.second, w1, w2, {}, {}};
     for (int a = 0; a < 3; ++a) {
       const V move = hn::Mul(shift, apart[a]);
@@ -144,20 +148,20 @@ double evaluate_block(const BlockView& b, float* lane_sums, const BlockSums& sum
     // The few candidates that occur in these lanes; no scattering.
     if (few) {
       for (std::uint32_t bits = present(first, second); bits != 0; bits &= bits - 1)
-        add_parts(d, parts, static_cast<std::size_t>(__builtin_ctz(bits)), lane_sums);
+        add_parts(d, parts, static_cast<std::size_t>(__builtin_ctz(bits)), lane_sums + first_lane);
     } else {
-      for (std::size_t c = 0; c < b.seeds; ++c) add_parts(d, parts, c, lane_sums);
+      for (std::size_t c = 0; c < b.seeds; ++c) add_parts(d, parts, c, lane_sums + first_lane);
     }
   }
   for (std::size_t c = 0; c < b.seeds; ++c) {
     const float* at = lane_sums + lane_sums_per_seed * c;
-    const float m = sum_lanes(d, hn::LoadU(d, at));
+    const float m = sum_lanes(at);
     sums.mass[c] = m;
-    sums.mx[c] = sum_lanes(d, hn::LoadU(d, at + max_lanes)) - m * b.seed_x[c];
-    sums.my[c] = sum_lanes(d, hn::LoadU(d, at + 2 * max_lanes)) - m * b.seed_y[c];
-    sums.mz[c] = sum_lanes(d, hn::LoadU(d, at + 3 * max_lanes)) - m * b.seed_z[c];
+    sums.mx[c] = sum_lanes(at + max_lanes) - m * b.seed_x[c];
+    sums.my[c] = sum_lanes(at + 2 * max_lanes) - m * b.seed_y[c];
+    sums.mz[c] = sum_lanes(at + 3 * max_lanes) - m * b.seed_z[c];
   }
-  return sum_lanes(d, energy);
+  return sum_lanes(energy);
 }
 
 std::size_t keep_near_seeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed,
@@ -235,7 +239,7 @@ SeedsInReach find_seeds_in_reach(const float* center, float radius, const float*
     second = hn::Min(second, hn::Max(best, worst));
     best = hn::Min(best, worst);
   }
-  HWY_ALIGN float lane[16];
+  HWY_ALIGN float lane[2 * max_lanes];
   hn::Store(best, d, lane);
   hn::Store(second, d, lane + lanes);
   float least = far_away, next = far_away;
@@ -260,7 +264,7 @@ void nearest_in_block(const BlockView& b, std::uint32_t* nearest) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   const auto to_int = hn::RebindToSigned<D>();
-  HWY_ALIGN std::int32_t lane[8];
+  HWY_ALIGN std::int32_t lane[max_lanes];
   for (std::size_t i = 0; i < b.samples; i += lanes) {
     const V x = load(d, b.x, i, b.samples), y = load(d, b.y, i, b.samples), z = load(d, b.z, i, b.samples);
     V best = hn::Set(d, 1e30f), index = hn::Zero(d);
@@ -280,7 +284,7 @@ void nearest_in_block(const BlockView& b, std::uint32_t* nearest) {
 void nearest_pair_in_block(const BlockView& b, std::uint32_t* first, std::uint32_t* second, float* distance) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
-  HWY_ALIGN float index1[8], index2[8], gap[8];
+  HWY_ALIGN float index1[max_lanes], index2[max_lanes], gap[max_lanes];
   for (std::size_t i = 0; i < b.samples; i += lanes) {
     const Nearest2 n =
         nearest_two(d, b, load(d, b.x, i, b.samples), load(d, b.y, i, b.samples), load(d, b.z, i, b.samples));

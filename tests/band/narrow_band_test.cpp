@@ -1,8 +1,8 @@
 #include "band/narrow_band.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
+#include "core/instruction_sets.h"
 #include "evenmesh/error.h"
 #include "geometry/primitives.h"
 #include "voxel_checks.h"
@@ -133,16 +133,7 @@ TEST(NarrowBand, ThreadsAndInstructionSetsDoNotMatter) {
   evenmesh::ExecutionContext one(1), two(2);
   const NarrowBand band = build_narrow_band(sites, 5, one);
   expect_same(band, build_narrow_band(sites, 5, two));
-  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-    const std::int64_t target = targets & -targets;
-    if (target == HWY_EMU128 || target == HWY_SCALAR) continue;
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    const NarrowBand other = build_narrow_band(sites, 5, one);
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    expect_same(band, other);
-  }
+  on_every_instruction_set([&](const char*) { expect_same(band, build_narrow_band(sites, 5, one)); });
 }
 
 TEST(NarrowBand, HoldsItsSitesAndNamesNeighboursNoFartherThanOneStep) {

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "core/instruction_sets.h"
 #include "cvt/cvt_testing.h"
 #include "grid/density.h"
 
@@ -227,6 +228,36 @@ TEST(Cells, SameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(sums[t].energy, sums[0].energy);
     EXPECT_EQ(labels[t], labels[0]);
   }
+}
+
+/// Also that none reads behind an array: numbers of samples and seeds that fill no vector.
+TEST(Cells, SameBitsOnEveryInstructionSet) {
+  for (const SampleSet& samples : surfaces())
+    for (const std::size_t count : {1u, 7u, 300u, 2001u}) {
+      evenmesh::ExecutionContext context(1);
+      const auto seeds = random_start(samples, std::min(count, samples.size()), 9);
+      const auto evaluate = [&](CellSums& sums, std::vector<std::uint32_t>& labels, std::vector<NearestPair>& pairs) {
+        CpuCellEvaluator evaluator(samples, context);
+        evaluator.evaluate(seeds, sums);
+        evaluator.nearest(seeds, labels);
+        evaluator.nearest_pairs(seeds, pairs);
+      };
+      CellSums expected;
+      std::vector<std::uint32_t> expected_labels;
+      std::vector<NearestPair> expected_pairs;
+      evaluate(expected, expected_labels, expected_pairs);
+      on_every_instruction_set([&](const char* target) {
+        CellSums sums;
+        std::vector<std::uint32_t> labels;
+        std::vector<NearestPair> pairs;
+        evaluate(sums, labels, pairs);
+        EXPECT_TRUE(same_bytes(sums.mass, expected.mass)) << target;
+        EXPECT_TRUE(same_bytes(sums.moment, expected.moment)) << target;
+        EXPECT_EQ(sums.energy, expected.energy) << target;
+        EXPECT_EQ(labels, expected_labels) << target;
+        EXPECT_TRUE(same_bytes(pairs, expected_pairs)) << target;
+      });
+    }
 }
 
 TEST(Cells, ResultsDoNotDependOnEarlierCalls) {

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "core/instruction_sets.h"
 #include "pipeline/pipeline_testing.h"
 
 namespace evenmesh {
@@ -80,6 +81,16 @@ TEST(MeshOptions, ThreadsDoNotChangeMeshInputsOrThinParts) {
   const MeshOptions options{.vertices = 500, .quality = Quality::fast};
   for (const Shape& shape : {shape_from_mesh(make_torus()), gallery_shape("thin-plate")})
     EXPECT_TRUE(same_mesh(meshed(shape, options, 1).mesh, meshed(shape, options, 3).mesh)) << shape.name;
+}
+
+TEST(MeshOptions, InstructionSetsDoNotChangeTheMesh) {
+  const MeshOptions options{.vertices = 300, .quality = Quality::fast};
+  for (const Shape& shape : {shape_from_mesh(make_torus()), gallery_shape("sphere")}) {
+    const MeshResult expected = meshed(shape, options);
+    on_every_instruction_set([&](const char* target) {
+      EXPECT_TRUE(same_mesh(meshed(shape, options).mesh, expected.mesh)) << shape.name << " on " << target;
+    });
+  }
 }
 
 TEST(MeshOptions, SeedsChangeTheMesh) {

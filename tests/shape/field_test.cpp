@@ -4,7 +4,6 @@
 #include "shape/field.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <cmath>
 #include <cstdint>
@@ -12,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/instruction_sets.h"
 #include "shape/field_checks.h"
 
 namespace evenmesh {
@@ -31,7 +31,6 @@ using testing::random_points;
 using testing::value_at;
 using testing::wide_cube;
 
-/// Everything once per instruction set that this processor has.
 TEST(ExpressionField, EveryInstructionSetGivesTheSameBits) {
   std::vector<std::string> formulas = random_formulas(60, 5);
   for (const GalleryEntry& entry : gallery()) formulas.push_back("gallery:" + std::string(entry.name));
@@ -40,22 +39,16 @@ TEST(ExpressionField, EveryInstructionSetGivesTheSameBits) {
     const auto field =
         formula.starts_with("gallery:") ? testing::field_of(gallery_shape(formula.substr(8))) : parse(formula);
     const testing::Gradients expected = testing::gradients_at(*field, points);
-    for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-      const std::int64_t target = targets & -targets;
-      if (target == HWY_EMU128 || target == HWY_SCALAR) continue;
-      hwy::SetSupportedTargetsForTest(target);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    on_every_instruction_set([&](const char* target) {
       const testing::Gradients found = testing::gradients_at(*field, points);
-      hwy::SetSupportedTargetsForTest(0);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
       const auto same = [](const std::vector<float>& a, const std::vector<float>& b) {
         for (std::size_t i = 0; i < a.size(); ++i)
           if (a[i] != b[i] && !(std::isnan(a[i]) && std::isnan(b[i]))) return false;
         return true;
       };
-      EXPECT_TRUE(same(expected.values, found.values)) << formula << " on " << hwy::TargetName(target);
-      EXPECT_TRUE(same(expected.dx, found.dx)) << formula << " on " << hwy::TargetName(target);
-    }
+      EXPECT_TRUE(same(expected.values, found.values)) << formula << " on " << target;
+      EXPECT_TRUE(same(expected.dx, found.dx)) << formula << " on " << target;
+    });
   }
 }
 
