@@ -35,7 +35,7 @@ enum class FindingCode {
   features_not_followed,
   features_released,
   small_components_dropped,
-  balls_united,
+  gaps_filled,
   topology_simplified,
   euler_differs,
   vertex_count,

@@ -14,7 +14,8 @@ namespace evenmesh {
 namespace {
 
 using Index = std::uint32_t;
-constexpr double tiny_piece = 0.1;  ///< of a mean cell
+constexpr double tiny_piece = 0.1;    ///< of a mean cell
+constexpr double divided_cell = 0.3;  ///< of a mean cell
 
 /// What one pass over all cubes collects.
 class Complex {
@@ -193,7 +194,7 @@ class Splitter {
       const Piece& piece = pieces_[p];
       const bool first = p == 0 || pieces_[p - 1].label != piece.label;
       if (first) continue;
-      if (piece.area < tiny_piece * mean_cell) {
+      if (piece.area < tiny_piece * cell_to_compare(p, mean_cell)) {
         tiny.push_back({piece.root, static_cast<Index>(p)});
         continue;
       }
@@ -204,6 +205,14 @@ class Splitter {
   }
 
  private:
+  /// Cells that were divided on purpose have small pieces: those count by the cell's own size.
+  double cell_to_compare(std::size_t p, double mean_cell) const {
+    double own = 0;
+    std::size_t first = p;
+    while (first > 0 && pieces_[first - 1].label == pieces_[p].label) --first;
+    for (; first < pieces_.size() && pieces_[first].label == pieces_[p].label; ++first) own += pieces_[first].area;
+    return own < divided_cell * mean_cell ? own : mean_cell;
+  }
   void give_new_label(const Piece& piece, std::vector<std::pair<Index, Index>>& label_of_root) {
     const auto label = static_cast<Index>(result_.labels++);
     label_of_root.push_back({piece.root, label});

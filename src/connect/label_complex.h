@@ -41,7 +41,8 @@ struct LabelComplex {
 /// Each crossing of a grid edge is one quad of the closed surface between inside and outside points; quads around a
 /// grid cube's loop of crossings meet in a corner. Three or more labels around a corner make a dual polygon. A label
 /// whose quads are not connected is split, and its largest piece keeps it, or the one nearest to the seed where that is
-/// fixed; a piece smaller than a tenth of a mean cell goes to a neighbour.
+/// fixed; a piece smaller than a tenth of a mean cell, or of its own where that is below 0.3
+/// mean cells, goes to a neighbour.
 ///
 /// Guarantee: without defects the triangles are a closed, oriented two-manifold with the topology of the sampled solid.
 /// Where samples have no label the surface has a boundary; several fans of triangles may then meet in one vertex there.

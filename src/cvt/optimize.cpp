@@ -92,6 +92,7 @@ class Descent {
       : evaluator_(evaluator),
         seeds_(seeds.positions),
         fixed_(seeds.fixed.size()),
+        moving_(count_moving(seeds, options)),
         options_(options),
         context_(context),
         area_(evaluator.samples().total_area),
@@ -119,8 +120,14 @@ class Descent {
   }
 
  private:
+  /// At least 1. Fixed ones count as if they moved: where there are no others nothing is frozen.
+  static std::size_t count_moving(const Seeds& seeds, const OptimizeOptions& options) {
+    const auto frozen = std::count_if(options.frozen.begin(), options.frozen.end(), [](char f) { return f != 0; });
+    return std::max<std::size_t>(1, seeds.size() - static_cast<std::size_t>(frozen));
+  }
   std::size_t count() const { return seeds_.size(); }
   double spacing() const { return std::sqrt(area_ / static_cast<double>(count())); }
+  bool stays(std::size_t i) const { return i < fixed_ || (i < options_.frozen.size() && options_.frozen[i] != 0); }
   bool used_up() const { return result_.ratios.size() >= options_.evaluations; }
 
   void evaluate(const Vectors& at, CellSums& out) {
@@ -129,7 +136,7 @@ class Descent {
     result_.ratios.push_back(energy_ratio(out.energy, count(), area_));
   }
   void find_gradient(const CellSums& sums, Vectors& gradient) const {
-    algebra_.each(count(), [&](std::size_t i) { gradient[i] = i < fixed_ ? Vec3{} : -2.0 * sums.moment[i]; });
+    algebra_.each(count(), [&](std::size_t i) { gradient[i] = stays(i) ? Vec3{} : -2.0 * sums.moment[i]; });
   }
 
   /// @return its product with the gradient
@@ -146,7 +153,7 @@ class Descent {
     return algebra_.dot_all(step_, gradient_);
   }
   double mean_step() const {
-    return ordered_sum(context_, count(), [&](std::size_t i) { return norm(step_[i]); }) / static_cast<double>(count());
+    return ordered_sum(context_, count(), [&](std::size_t i) { return norm(step_[i]); }) / static_cast<double>(moving_);
   }
 
   /// Shorter and shorter steps; whether one of them leads down far enough.
@@ -175,6 +182,7 @@ class Descent {
   CellEvaluator& evaluator_;
   Vectors& seeds_;
   std::size_t fixed_;  ///< of them, the first ones
+  std::size_t moving_;
   const OptimizeOptions& options_;
   ExecutionContext& context_;
   const double area_;

@@ -9,9 +9,10 @@
 namespace evenmesh {
 
 struct OptimizeOptions {
-  bool lloyd = false;            ///< Lloyd's iteration instead of L-BFGS
-  std::size_t evaluations = 50;  ///< of the energy, at most
-  double tolerance = 1e-4;       ///< stop when the mean step is below this share of the seed spacing √(A/k)
+  bool lloyd = false;              ///< Lloyd's iteration instead of L-BFGS
+  std::size_t evaluations = 50;    ///< of the energy, at most
+  double tolerance = 1e-4;         ///< stop when the mean step is below this share of the seed spacing √(A/k)
+  std::span<const char> frozen{};  ///< by seed, besides the fixed ones: not 0 where it stays; may end early
 };
 
 struct OptimizeResult {

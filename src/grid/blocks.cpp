@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "evenmesh/error.h"
+#include "grid/morton.h"
 
 namespace evenmesh {
 
@@ -117,6 +118,43 @@ SampleSet gather(const SampleSet& set, std::span<const std::uint32_t> index, con
       },
       set, rest);
   return rest;
+}
+
+SampleSet part_of(const SampleSet& whole, std::span<const std::uint32_t> blocks, const ExecutionContext& context) {
+  SampleSet part;
+  part.grid = whole.grid;
+  part.total_area = whole.total_area;
+  part.total_weight = whole.total_weight;
+  part.cut_by_bounds = whole.cut_by_bounds;
+  std::vector<std::uint64_t> keys, chosen, around;
+  for (const SampleBlock& block : whole.blocks)
+    keys.push_back(morton_code(block.brick[0], block.brick[1], block.brick[2]));
+  std::uint32_t count = 0;
+  for (const std::uint32_t b : blocks) {
+    SampleBlock block = whole.blocks[b];
+    const std::uint32_t shift = block.begin - count;
+    for (std::uint32_t* at : {&block.begin, &block.end, &block.axis_begin[0], &block.axis_begin[1]}) *at -= shift;
+    count = block.end;
+    part.blocks.push_back(block);
+    chosen.push_back(keys[b]);
+    for (int n = 0; n < 27; ++n) {
+      const int x = block.brick[0] + n % 3 - 1, y = block.brick[1] + n / 3 % 3 - 1, z = block.brick[2] + n / 9 - 1;
+      if (std::min({x, y, z}) >= 0) around.push_back(morton_code(std::uint64_t(x), std::uint64_t(y), std::uint64_t(z)));
+    }
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  for (const std::uint64_t key : around)
+    if (!std::binary_search(chosen.begin(), chosen.end(), key) && std::binary_search(keys.begin(), keys.end(), key))
+      part.left_out.push_back(key);
+  resize_like(part, whole, count, context);
+  parallel_for(context, blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const SampleBlock& from = whole.blocks[blocks[b]];
+      copy_samples(whole, from.begin, from.end, part, part.blocks[b].begin);
+    }
+  });
+  return part;
 }
 
 }  // namespace evenmesh

@@ -50,6 +50,11 @@ inline void copy_samples(const SampleColumns& from, std::size_t begin, std::size
 SampleSet gather(const SampleSet& set, std::span<const std::uint32_t> index,
                  const ExecutionContext& context = ExecutionContext::silent());
 
+/// The blocks with these indices, ascending, as a set of their own that knows which bricks around it were left out. Its
+/// totals remain those of the whole: what a mean cell is does not change. Cost: O(samples of the part).
+SampleSet part_of(const SampleSet& whole, std::span<const std::uint32_t> blocks,
+                  const ExecutionContext& context = ExecutionContext::silent());
+
 /// The samples for which keep(index) is true, as gather().
 template <typename Keep>
 SampleSet keep_samples(const SampleSet& set, const Keep& keep,

@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "evenmesh/error.h"
+#include "grid/morton.h"
 
 namespace evenmesh {
 namespace {
@@ -13,28 +14,34 @@ class BlockTable {
  public:
   explicit BlockTable(const SampleSet& samples) : samples_(samples) {
     std::size_t slots = 16;
-    while (slots < 2 * samples.blocks.size()) slots *= 2;
+    while (slots < 2 * (samples.blocks.size() + samples.left_out.size())) slots *= 2;
     mask_ = slots - 1;
     block_.assign(slots, none);
-    for (std::uint32_t b = 0; b < samples.blocks.size(); ++b) {
-      const auto& at = samples.blocks[b].brick;
+    for (std::uint32_t b = 0; b < samples.blocks.size() + samples.left_out.size(); ++b) {
+      const auto at = brick(b);
       std::size_t slot = first_slot(at[0], at[1], at[2]);
       while (block_[slot] != none) slot = (slot + 1) & mask_;
       block_[slot] = b;
     }
   }
   /// −1: there is none.
+  static constexpr std::int64_t left_out = -2;
   std::int64_t find(int x, int y, int z) const {
     if (x < 0 || y < 0 || z < 0) return -1;
     for (std::size_t slot = first_slot(x, y, z); block_[slot] != none; slot = (slot + 1) & mask_) {
-      const auto& at = samples_.blocks[block_[slot]].brick;
-      if (at[0] == x && at[1] == y && at[2] == z) return block_[slot];
+      const auto at = brick(block_[slot]);
+      if (at[0] == x && at[1] == y && at[2] == z)
+        return block_[slot] < samples_.blocks.size() ? block_[slot] : left_out;
     }
     return -1;
   }
 
  private:
   static constexpr std::uint32_t none = 0xffffffffu;
+  std::array<std::uint16_t, 3> brick(std::uint32_t b) const {
+    return b < samples_.blocks.size() ? samples_.blocks[b].brick
+                                      : morton_decode(samples_.left_out[b - samples_.blocks.size()]);
+  }
   /// Rows of bricks stay together in memory.
   std::size_t first_slot(int x, int y, int z) const {
     const std::uint64_t row = static_cast<std::uint64_t>(y) << 16 | static_cast<std::uint64_t>(z);
@@ -57,11 +64,14 @@ void bricks_of_block(const SampleSet& samples, const BlockTable& table, std::siz
     brick.at = {at[0] - sx, at[1] - sy, at[2] - sz};
     if (brick.at[0] < 0 || brick.at[1] < 0 || brick.at[2] < 0) continue;
     std::int64_t first = -1;
+    bool complete = true;
     for (int d = 0; d < 8; ++d) {
       const int x = 1 - sx + (d & 1), y = 1 - sy + (d >> 1 & 1), z = 1 - sz + (d >> 2);
       brick.block[d] = around[x + 3 * y + 9 * z];
+      complete &= brick.block[d] != BlockTable::left_out;
       if (brick.block[d] >= 0 && (first < 0 || brick.block[d] < first)) first = brick.block[d];
     }
+    if (!complete) continue;
     if (shift == 0 || (brick.block[0] < 0 && first == static_cast<std::int64_t>(b))) bricks.push_back(brick);
   }
 }

@@ -18,7 +18,7 @@ struct CubeBrick {
 };
 
 /// All bricks with a crossed cube, in the order of the blocks; a brick without samples of its own comes with the first
-/// block that has it as a lower neighbour.
+/// block that has it as a lower neighbour. Of a part those that reach into what was left out are not among them.
 std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const ExecutionContext& context);
 
 /// Finds the loops of one brick's cubes; reusable, one per thread.

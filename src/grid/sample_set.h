@@ -121,6 +121,9 @@ struct SampleSet : SampleColumns {
   std::size_t disagreements = 0;  ///< grid points whose inside differed between directions, settled by vote
   std::size_t unresolved = 0;     ///< crossings left out because one grid edge held several (features thinner than h)
   bool cut_by_bounds = false;     ///< the solid reached the bounds and was closed there
+  /// Of a part (part_of() in grid/blocks.h): Morton codes of the bricks next to it whose samples are not in it,
+  /// ascending. Cubes there are not walked.
+  std::vector<std::uint64_t> left_out{};
 
   Vec3 block_center(const SampleBlock& b) const {
     constexpr double half = brick_size / 2.0;

@@ -74,7 +74,7 @@ void find_boundary(const Tessellation& cells, const std::vector<char>& on_bounda
   }
 }
 
-/// Vertices of seeds on feature curves go there, except where a ball has covered the curve.
+/// Vertices of seeds on feature curves go there, except where the solid was changed.
 void constrain(const Tessellation& cells, Draft& draft) {
   const Seeds& fixed = cells.feature_seeds.seeds;
   if (fixed.size() == 0 && cells.features.apexes.empty()) return;
@@ -83,7 +83,7 @@ void constrain(const Tessellation& cells, Draft& draft) {
   for (std::size_t l = 0; l < fixed.size(); ++l) {
     const Vec3& place = fixed.positions[l];
     const std::uint32_t v = draft.vertex_of_label[l];
-    if (v == Draft::none || cells.balls.outside(place) != place) continue;
+    if (v == Draft::none || cells.was_changed_at(place)) continue;
     const Attachment& on = fixed.fixed[l];
     constraints.curve[v] = on.kind == Attachment::Kind::corner ? VertexConstraints::corner : on.index;
     draft.mesh.vertices[v] = place;
@@ -101,7 +101,7 @@ void constrain(const Tessellation& cells, Draft& draft) {
 void constrain_to_apexes(const Tessellation& cells, Draft& draft) {
   std::vector<Vec3> apexes;
   for (const Vec3& apex : cells.features.apexes)
-    if (cells.balls.outside(apex) == apex) apexes.push_back(apex);
+    if (!cells.was_changed_at(apex)) apexes.push_back(apex);
   constrain_apexes(draft.mesh, draft.constraints, apexes, draft.sizing.mean());
 }
 

@@ -47,13 +47,13 @@ constexpr std::array kinds{
     Kind{FindingCode::features_not_followed, warning, "features-not-followed",
          "none of the {count:.0f} sharp edges found is kept: {reason}"},
     Kind{FindingCode::features_released, warning, "features-released",
-         "{count:.0f} sharp edges were given up where they stood in the way of the topology: ask for more vertices, or "
-         "take --topology keep"},
+         "{count:.0f} sharp edges were given up where they stood in the way of the topology: ask for more vertices"},
     Kind{FindingCode::small_components_dropped, warning, "small-components-dropped",
          "{count:.0f} pieces of surface smaller than a cell were left out"},
-    Kind{FindingCode::balls_united, warning, "balls-united",
-         "the surface comes closer to itself than the grid can tell, or ends in detail that it cannot: {count:.0f} "
-         "balls of half an edge or more were united with the solid there"},
+    Kind{FindingCode::gaps_filled, warning, "gaps-filled",
+         "the surface comes closer to itself than the grid can tell (about {size:.3g}), or is thinner: that was filled "
+         "in {count:.0f} places, a volume of {volume:.3g} altogether, first at ({x:.4g}, {y:.4g}, {z:.4g}); -n "
+         "{finer:.0f} tells twice as much"},
     Kind{FindingCode::topology_simplified, warning, "topology-simplified",
          "the topology was made simpler where it needs more vertices: {count:.0f} balls of half an edge or more were "
          "united with the solid there"},

@@ -22,6 +22,8 @@ class Refinement {
     if (options_.placement != Placement::centroid && cells_.sampling.plan.route != Route::wrap) {
       projector_ = sampler_.projector(cells_.sampling.surface(), context_);
       if (!cells_.balls.balls().empty()) projector_ = make_ball_projector(std::move(projector_), cells_.balls);
+      if (!cells_.filled.balls().empty())
+        projector_ = make_filling_projector(std::move(projector_), cells_.filled, cells_.sampling.samples.grid.spacing);
     }
     std::vector<Vec3>& vertices = draft_.mesh.vertices;
     if (projector_)
@@ -90,7 +92,7 @@ class Refinement {
     std::vector<Vec3> places = mesh.vertices;
     sampler_.step_onto(places, 0.25 * cells_.sampling.samples.grid.spacing);
     for (std::uint32_t v = 0; v < places.size(); ++v)
-      if (!draft_.constraints.vertex(v) && cells_.balls.outside(places[v]) == places[v]) mesh.vertices[v] = places[v];
+      if (!draft_.constraints.vertex(v) && !cells_.was_changed_at(places[v])) mesh.vertices[v] = places[v];
   }
 
   Draft draft_;

@@ -64,14 +64,16 @@ class Judge {
       say(FindingCode::small_components_dropped, {{"count", number(report_.dropped_components)}});
     judge_topology();
     judge_triangles();
-    const double asked = number(report_.seeds_asked), made = number(quality_.vertices);
-    if (std::abs(made - asked) > 0.005 * asked)
-      say(FindingCode::vertex_count,
-          {{"vertices", made}, {"asked", asked}, {"reason", made > asked ? "needs more" : "leaves room for fewer"}});
+    const double made = number(quality_.vertices);
+    if (std::abs(made - asked()) > 0.005 * asked())
+      say(FindingCode::vertex_count, {{"vertices", made},
+                                      {"asked", asked()},
+                                      {"reason", made > asked() ? "needs more" : "leaves room for fewer"}});
     return std::move(findings_);
   }
 
  private:
+  double asked() const { return number(report_.seeds_asked); }
   static double number(std::size_t n) { return static_cast<double>(n); }
   void say(FindingCode code, std::vector<std::pair<std::string, FindingValue>> values = {}) {
     findings_.push_back(make_finding(code, std::move(values)));
@@ -81,8 +83,14 @@ class Judge {
     const bool closed = cells_.sampling.closed(), fragments = options_.connect == Connect::fragments;
     const bool manifold = quality_.two_manifold() && quality_.oriented();
     if (const std::size_t balls = cells_.balls.balls().size(); balls > 0)
-      say(options_.topology == TopologyRule::simplify ? FindingCode::topology_simplified : FindingCode::balls_united,
-          {{"count", number(balls)}});
+      say(FindingCode::topology_simplified, {{"count", number(balls)}});
+    if (const std::vector<Ball>& places = cells_.filled.balls(); !places.empty())
+      findings_.push_back(make_finding(FindingCode::gaps_filled,
+                                       {{"count", number(places.size())},
+                                        {"volume", cells_.filled_volume},
+                                        {"size", 2 * report_.spacing},
+                                        {"finer", 4 * asked()}},
+                                       places.front().center));
     if (!closed && fragments && !cells_.two_manifold) say(FindingCode::cells_torn);
     const double bad_edges = number(quality_.non_manifold_edges);
     if (!closed && !manifold) say(FindingCode::not_manifold, {{"edges", bad_edges}});

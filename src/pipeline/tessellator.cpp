@@ -13,7 +13,10 @@
 #include "cvt/starts.h"
 #include "evenmesh/error.h"
 #include "features/crowding.h"
+#include "grid/blocks.h"
+#include "grid/morton.h"
 #include "grid/surface_components.h"
+#include "topology/closing.h"
 
 namespace evenmesh {
 namespace {
@@ -53,13 +56,14 @@ Tessellator::Tessellator(Sampling sampling, const MeshOptions& o, const Kernels&
                          ExecutionContext& c)
     : options(o), timer(t), context(c), kernels_(kernels) {
   result.sampling = std::move(sampling);
-  renew_evaluator();
 }
 
-void Tessellator::renew_evaluator() {
+CellEvaluator& Tessellator::evaluator() {
   const SampleSet& samples = result.sampling.samples;
-  evaluator_ = kernels_.cells ? kernels_.cells->evaluator(samples, context)
-                              : std::make_unique<CpuCellEvaluator>(samples, context);
+  if (!evaluator_)
+    evaluator_ = kernels_.cells ? kernels_.cells->evaluator(samples, context)
+                                : std::make_unique<CpuCellEvaluator>(samples, context);
+  return *evaluator_;
 }
 
 double Tessellator::edge() const {
@@ -95,7 +99,7 @@ void Tessellator::relax_all(std::size_t count) {
         const double edge = edge_length_of(result.sampling.samples.total_area, double(seeds));
         return place_feature_seeds(result.features, edge).seeds;
       };
-    RelaxResult relaxed = relax_seeds(*evaluator_, count, relax, context);
+    RelaxResult relaxed = relax_seeds(evaluator(), count, relax, context);
     result.seeds = std::move(relaxed.seeds);
     result.energies.insert(result.energies.end(), relaxed.ratios.begin(), relaxed.ratios.end());
     result.energy_ratio = relaxed.energy_ratio;
@@ -105,15 +109,24 @@ void Tessellator::relax_all(std::size_t count) {
 void Tessellator::relax(std::size_t effort) {
   timer.stage("relax", 0, [&] {
     const bool lloyd = options.optimizer == Optimizer::lloyd;
-    const auto relaxed =
-        optimize(*evaluator_, result.seeds, {lloyd, effort * relaxing_evaluations, options.tolerance}, context);
-    if (closed()) result.energies.insert(result.energies.end(), relaxed.ratios.begin(), relaxed.ratios.end());
+    const auto relaxed = optimize(evaluator(), result.seeds,
+                                  {lloyd, effort * relaxing_evaluations, options.tolerance, frozen_}, context);
+    if (closed() && frozen_.empty())
+      result.energies.insert(result.energies.end(), relaxed.ratios.begin(), relaxed.ratios.end());
   });
+}
+
+void Tessellator::relax_last(std::size_t first) {
+  std::vector<char> frozen(result.seeds.size(), 0);
+  std::fill_n(frozen.begin(), std::min(first, frozen.size()), 1);
+  std::swap(frozen, frozen_);
+  relax();
+  std::swap(frozen, frozen_);
 }
 
 void Tessellator::connect() {
   timer.stage("connect", 0.1, [&] {
-    evaluator_->nearest(result.seeds, result.labels);
+    evaluator().nearest(result.seeds, result.labels);
     if (options.connect == Connect::fragments)
       connect_as_fragments();
     else if (closed())
@@ -133,6 +146,7 @@ void Tessellator::connect_solid() {
   const SampleSet& samples = result.sampling.samples;
   if (options.connect == Connect::flood) flood_labels(samples, result.labels, result.seeds, context);
   if (fixed() > 0) constrain_labels(samples, result.features, result.feature_seeds, result.labels, context);
+  forget_incomplete_cells();
   result.complex = dual_of(samples, result.labels);
 }
 
@@ -165,6 +179,11 @@ void Tessellator::forget_split_cells() {
   result.complex.pieces.clear();
 }
 
+void Tessellator::insert(std::span<const Vec3> seeds) {
+  result.seeds.positions.insert(result.seeds.positions.end(), seeds.begin(), seeds.end());
+  result.inserted_seeds += seeds.size();
+}
+
 std::vector<std::uint32_t> Tessellator::unconnected() const {
   constexpr double owns_nothing = -1;
   const SampleSet& samples = result.sampling.samples;
@@ -173,6 +192,7 @@ std::vector<std::uint32_t> Tessellator::unconnected() const {
     for (const std::uint32_t l : t) connected[l] = 1;
   std::vector<double> area(result.seeds.size(), owns_nothing);
   for (std::size_t i = 0; i < result.labels.size(); ++i) {
+    if (result.labels[i] == no_label) continue;
     double& sum = area[result.labels[i]];
     sum = std::max(sum, 0.0) + samples.area[i];
   }
@@ -180,7 +200,7 @@ std::vector<std::uint32_t> Tessellator::unconnected() const {
   const double worth_it = closed() ? owns_nothing : 0.5 * samples.total_area / static_cast<double>(wanted());
   std::vector<std::uint32_t> list;
   for (std::uint32_t l = 0; l < area.size(); ++l)
-    if (!connected[l] && area[l] > worth_it) list.push_back(l);
+    if (!connected[l] && area[l] > worth_it && !is_frozen(l)) list.push_back(l);
   return list;
 }
 
@@ -190,21 +210,24 @@ std::vector<Defect> Tessellator::defects() const {
   return list;
 }
 
-bool Tessellator::clear_small_components() {
-  if (unconnected().empty()) return false;
+bool Tessellator::drop_small_components() {
   Sampling& sampling = result.sampling;
   std::size_t dropped = 0;
   timer.stage("connect", 0, [&] {
     const double cell = sampling.samples.total_area / static_cast<double>(wanted());
-    RemainingSurface rest = drop_small_components(std::move(sampling.samples), cell, context);
+    RemainingSurface rest = evenmesh::drop_small_components(std::move(sampling.samples), cell, context);
     sampling.samples = std::move(rest.samples);
     dropped = rest.dropped;
-    if (dropped > 0) renew_evaluator();
+    if (dropped > 0) evaluator_.reset();
   });
-  if (dropped == 0) return false;
   sampling.dropped_components += dropped;
-  if (sampling.samples.size() < wanted())
+  if (dropped > 0 && sampling.samples.size() < wanted())
     throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
+  return dropped > 0;
+}
+
+bool Tessellator::clear_small_components() {
+  if (unconnected().empty() || !drop_small_components()) return false;
   refill_idle_seeds();
   relax();
   connect();
@@ -216,7 +239,7 @@ void Tessellator::refill_idle_seeds() {
   timer.stage("relax", 0, [&] {
     forget_split_cells();
     const std::size_t count = std::min(result.seeds.size(), wanted());
-    evaluator_->nearest(result.seeds, result.labels);
+    evaluator().nearest(result.seeds, result.labels);
     std::vector<char> owns(result.seeds.size(), 0);
     for (const std::uint32_t l : result.labels) owns[l] = 1;
     std::size_t kept = 0;
@@ -228,7 +251,7 @@ void Tessellator::refill_idle_seeds() {
 }
 
 void Tessellator::adjust_count(std::size_t count, std::uint64_t salt) {
-  evenmesh::adjust_count(*evaluator_, result.seeds, count, options.seed + salt, context);
+  evenmesh::adjust_count(evaluator(), result.seeds, count, options.seed + salt, context);
 }
 
 void Tessellator::adjust_and_relax(std::size_t count) {
@@ -242,7 +265,7 @@ TopologyRepair Tessellator::plan_repair(std::span<const Vec3> ambiguous, Topolog
     repair.edge = closed() ? edge() : edge_length_of(result.sampling.samples.total_area, double(result.seeds.size()));
     repair.given = given();
     return plan_topology_repair(result.sampling.samples, result.labels, result.seeds, defects(), ambiguous,
-                                result.balls, repair);
+                                result.filled, repair);
   });
 }
 
@@ -252,7 +275,7 @@ void Tessellator::unite_changed(std::span<const std::uint32_t> changed) {
     for (const std::uint32_t b : changed) balls.push_back(result.balls.balls()[b]);
     const std::size_t count = std::min(result.seeds.size(), wanted());
     result.sampling.samples = unite_balls(result.sampling.samples, balls, context);
-    renew_evaluator();
+    evaluator_.reset();
     std::vector<Vec3>& seeds = result.seeds.positions;
     std::vector<Vec3> others(result.seeds.free_positions().begin(), result.seeds.free_positions().end());
     clear_around(others, result.balls, changed, edge());
@@ -261,6 +284,81 @@ void Tessellator::unite_changed(std::span<const std::uint32_t> changed) {
     if (result.seeds.size() < count) adjust_count(count, 11);
     ++result.regularization_rounds;
   });
+}
+
+void Tessellator::fill_gaps(std::span<const Ball> places) {
+  timer.stage("regularize", 0, [&] {
+    FilledSolid made = evenmesh::fill_gaps(result.sampling.samples, places, context);
+    result.sampling.samples = std::move(made.samples);
+    result.filled_volume += made.volume;
+    evaluator_.reset();
+    ++result.regularization_rounds;
+  });
+}
+
+std::unique_ptr<Tessellator> Tessellator::part_around(std::span<const Vec3> points) const {
+  constexpr double free_within = 2, part_within = 4.5;  // edges: between them are two rings of cells that stay complete
+  constexpr double most = 0.8;                          // of the samples
+  const SampleSet& samples = result.sampling.samples;
+  const SizingField& sizing = result.sampling.sizing;
+  // Where edges shall be longer than the mean, the part reaches farther.
+  double longest = edge();
+  for (const Vec3& p : points) longest = std::max(longest, sizing.edge(p));
+  const PointHash index(points, part_within * longest);
+  const auto is_near = [&](const Vec3& p, double edges) {
+    return index.near(p, edges * longest, [](std::uint32_t) { return true; });
+  };
+  std::vector<std::uint32_t> blocks;
+  std::size_t size = 0;
+  for (std::uint32_t b = 0; b < samples.blocks.size(); ++b) {
+    const SampleBlock& block = samples.blocks[b];
+    if (!is_near(samples.block_center(block), part_within)) continue;
+    blocks.push_back(b);
+    size += block.end - block.begin;
+  }
+  if (static_cast<double>(size) > most * static_cast<double>(samples.size())) return nullptr;
+  Sampling sampling;
+  sampling.plan = result.sampling.plan;
+  sampling.sizing = sizing;
+  sampling.samples = part_of(samples, blocks, context);
+  auto part = std::make_unique<Tessellator>(std::move(sampling), options, kernels_, timer, context);
+  part->result.features = result.features;
+  part->result.feature_seeds = result.feature_seeds;
+  part->result.seeds = result.seeds;
+  part->result.seeds.positions.resize(given());
+  part->result.filled = result.filled;
+  for (const Vec3& seed : part->result.seeds.positions) part->frozen_.push_back(!is_near(seed, free_within));
+  return part;
+}
+
+void Tessellator::take_seeds(Tessellator& part) {
+  part.forget_split_cells();
+  result.seeds = part.result.seeds;
+  result.complex.pieces.clear();
+  result.inserted_seeds += part.result.inserted_seeds;
+  part.result.inserted_seeds = 0;
+}
+
+void Tessellator::forget_incomplete_cells() {
+  const SampleSet& samples = result.sampling.samples;
+  const std::vector<std::uint64_t>& left_out = samples.left_out;
+  if (left_out.empty()) return;
+  std::vector<char> incomplete(result.seeds.size(), 0);
+  for (const SampleBlock& block : samples.blocks) {
+    bool at_border = false;
+    for (int n = 0; n < 27 && !at_border; ++n) {
+      const std::array<int, 3> at{block.brick[0] + n % 3 - 1, block.brick[1] + n / 3 % 3 - 1,
+                                  block.brick[2] + n / 9 - 1};
+      at_border = std::min({at[0], at[1], at[2]}) >= 0 &&
+                  std::binary_search(left_out.begin(), left_out.end(),
+                                     morton_code(static_cast<std::uint64_t>(at[0]), static_cast<std::uint64_t>(at[1]),
+                                                 static_cast<std::uint64_t>(at[2])));
+    }
+    if (!at_border) continue;
+    for (std::uint32_t i = block.begin; i < block.end; ++i) incomplete[result.labels[i]] = 1;
+  }
+  for (std::uint32_t& label : result.labels)
+    if (incomplete[label]) label = no_label;
 }
 
 void Tessellator::release_features() {
@@ -273,6 +371,7 @@ void Tessellator::release_features() {
   for (std::size_t c = 0; c < doomed.size(); ++c)
     for (const std::uint32_t corner : {result.features.curves[c].from, result.features.curves[c].to})
       if (corner != FeatureCurve::none && bad[corner]) doomed[c] = 1;
+  result.released_curves += static_cast<std::size_t>(std::count(doomed.begin(), doomed.end(), 1));
   result.features = without_curves(result.features, doomed);
   result.feature_seeds = place_feature_seeds(result.features, result.sampling.sizing.mean());
   forget_split_cells();

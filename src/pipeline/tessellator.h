@@ -23,6 +23,8 @@ class Tessellator {
   void relax_all(std::size_t count);
   /// A few evaluations for the seeds as they are. @param effort  times as many
   void relax(std::size_t effort = 1);
+  /// The same for the last seeds only, from index `first` on.
+  void relax_last(std::size_t first);
   /// Cells and their dual. Cells in several pieces are split: seeds for the others follow the given ones.
   void connect();
   /// Back to the seeds before connect(): it would split their cells again, and those of the pieces with them.
@@ -34,6 +36,18 @@ class Tessellator {
   void adjust_and_relax(std::size_t count);
   /// Unites the changed balls with the solid, and clears seeds away from them.
   void unite_changed(std::span<const std::uint32_t> changed);
+  /// Fills narrow gaps there; cells are to be connected again.
+  void fill_gaps(std::span<const Ball> places);
+  /// Removes pieces of the surface that are smaller than a cell; whether there were any.
+  bool drop_small_components();
+
+  /// The surface around some points, with all seeds: those away from the points stay where they are, and cells that
+  /// reach out of the part have no triangles. Null: it would be most of the surface.
+  std::unique_ptr<Tessellator> part_around(std::span<const Vec3> points) const;
+  /// The seeds of a part, those of split cells' pieces left out. Cells are to be connected again.
+  void take_seeds(Tessellator& part);
+  /// Free seeds more, which the topology needs.
+  void insert(std::span<const Vec3> seeds);
   /// Gives up the feature curves whose seeds do not get along; the other seeds of these are free now.
   void release_features();
 
@@ -52,7 +66,7 @@ class Tessellator {
   double edge() const;
 
   Tessellation result;
-  CellEvaluator& evaluator() { return *evaluator_; }
+  CellEvaluator& evaluator();
   const MeshOptions& options;
   StageTimer& timer;
   ExecutionContext& context;
@@ -62,14 +76,22 @@ class Tessellator {
   void connect_solid();
   void connect_sheets();
   void connect_as_fragments();
-  void renew_evaluator();
+  /// Of a part: cells with samples next to what was left out are not complete.
+  void forget_incomplete_cells();
+  bool is_frozen(std::size_t seed) const { return seed < frozen_.size() && frozen_[seed] != 0; }
   void refill_idle_seeds();
 
   const Kernels& kernels_;
-  std::unique_ptr<CellEvaluator> evaluator_;
+  std::unique_ptr<CellEvaluator> evaluator_;  ///< of the samples as they are; none yet after they changed
+  std::vector<char> frozen_;                  ///< of a part, by seed
 };
 
-/// Seeds, and balls where seeds cannot help, until all cells fit together or all rounds are used up.
+/// Where the grid leaves the topology to chance in so many places that it does not resolve the solid, as of fractals
+/// and of walls thinner than a cell: fills there; seeds are to be spread again then.
+/// @return whether it did
+bool fill_unresolved(Tessellator& state);
+/// More seeds, and gaps filled where seeds cannot help, around the places where cells do not fit together: until
+/// they do, or the work of a dozen relaxations of the whole surface is done. What is left then stays.
 void repair_solid(Tessellator& state);
 /// The paper's loop: the topology gives way, not the number of vertices. [Raster2Mesh §4.4]
 void simplify_solid(Tessellator& state);

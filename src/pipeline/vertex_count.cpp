@@ -9,6 +9,7 @@ namespace {
 constexpr int count_rounds = 3;      ///< attempts to meet the vertex count before the topology is repaired
 constexpr int trim_rounds = 6;       ///< and after it
 constexpr int trim_seed_rounds = 3;  ///< of seeds for the topology, after each of them
+constexpr int trim_failures = 3;     ///< after which the topology is taken to need what it has
 
 /// Vertices the mesh will have.
 std::size_t vertices_of(const Tessellation& cells) {
@@ -63,7 +64,7 @@ void trim_count(Tessellator& state) {
   if (!state.fits()) return;
   Tessellation& cells = state.result;
   const auto wanted = static_cast<std::int64_t>(state.wanted()), tolerance = wanted / 1000;
-  for (int attempt = 0, failures = 0; attempt < trim_rounds; ++attempt) {
+  for (int attempt = 0, failures = 0; attempt < trim_rounds && failures < trim_failures; ++attempt) {
     const auto made = static_cast<std::int64_t>(vertices_of(cells)), excess = made - wanted;
     if (std::abs(excess) <= tolerance) return;
     auto seeds = cells.seeds;

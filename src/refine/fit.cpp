@@ -310,9 +310,11 @@ std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const s
   std::vector<char> taken(mesh.vertices.size());
   std::size_t moves = 0;
   int shakes = 0;
+  std::size_t attempts = 0;
+  const std::size_t most_attempts = 500 + mesh.vertices.size() / 20;  // extremes are few; else the mesh is too coarse
   bool perturb = false;
   const int rounds = sample_error > 0 ? max_rounds_inexact : max_rounds;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < rounds && attempts < most_attempts; ++round) {
     fit.measure_deviations(context);
     std::vector<std::uint32_t> worst = perturb ? fit.around_the_stuck() : fit.far_vertices(among_the_worst);
     const std::size_t before = moves;
@@ -324,6 +326,7 @@ std::size_t fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const s
         moved[i] = attempt.reach() || attempt.lift();
         fit.hopeless[group[i]] = !moved[i];
       });
+      attempts += group.size();
       moves += static_cast<std::size_t>(std::count(moved.begin(), moved.end(), 1));
     }
     if (moves == before && (perturb || shakes == max_perturbations)) break;

@@ -7,9 +7,6 @@
 #include "grid/brick_cubes.h"
 
 namespace evenmesh {
-namespace {
-
-/// Whether a cube with these inside corners has a face that is crossed four times.
 bool has_diagonal_face(unsigned corners) {
   for (int axis = 0; axis < 3; ++axis)
     for (int level = 0; level < 2; ++level) {
@@ -19,8 +16,6 @@ bool has_diagonal_face(unsigned corners) {
     }
   return false;
 }
-
-}  // namespace
 
 std::vector<Vec3> find_ambiguous_faces(const SampleSet& samples, ExecutionContext& context) {
   std::array<bool, 256> ambiguous{};

@@ -1,5 +1,7 @@
 #include "topology/ball_projector.h"
 
+#include <algorithm>
+
 namespace evenmesh {
 namespace {
 
@@ -35,7 +37,28 @@ class BallProjector final : public Projector {
   const BallIndex& balls_;
 };
 
+class FillingProjector final : public Projector {
+ public:
+  FillingProjector(std::unique_ptr<Projector> inner, const BallIndex& places, double near)
+      : inner_(std::move(inner)), places_(places), near_(near) {}
+
+  Vec3 project(const Vec3& p, double limit) const override {
+    if (!inner_) return p;
+    return inner_->project(p, places_.covers(p) ? std::min(limit, near_) : limit);
+  }
+
+ private:
+  std::unique_ptr<Projector> inner_;
+  const BallIndex& places_;
+  double near_;
+};
+
 }  // namespace
+
+std::unique_ptr<Projector> make_filling_projector(std::unique_ptr<Projector> inner, const BallIndex& places,
+                                                  double near) {
+  return std::make_unique<FillingProjector>(std::move(inner), places, near);
+}
 
 std::unique_ptr<Projector> make_ball_projector(std::unique_ptr<Projector> inner, const BallIndex& balls) {
   return std::make_unique<BallProjector>(std::move(inner), balls);

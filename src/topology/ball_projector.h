@@ -12,4 +12,9 @@ namespace evenmesh {
 /// @param balls  must outlive the projector
 std::unique_ptr<Projector> make_ball_projector(std::unique_ptr<Projector> inner, const BallIndex& balls);
 
+/// Onto the shape, but not where gaps of it were filled: within these places, points that are farther than
+/// `near` (model units) from the shape stay where they are.
+std::unique_ptr<Projector> make_filling_projector(std::unique_ptr<Projector> inner, const BallIndex& places,
+                                                  double near);
+
 }  // namespace evenmesh

@@ -39,6 +39,12 @@ class BallIndex {
     const double r = reach + largest_;
     centers_.in_cells({p - Vec3{r, r, r}, p + Vec3{r, r, r}}, visit);
   }
+  bool covers(const Vec3& p) const {
+    bool covered = false;
+    near(p, 0,
+         [&](std::uint32_t b) { covered |= squared_norm(p - balls_[b].center) < balls_[b].radius * balls_[b].radius; });
+    return covered;
+  }
   /// The point itself, or, when it lies in balls, the nearest way out that a few steps find: in a crease to a
   /// thousandth of the radius.
   Vec3 outside(Vec3 p) const;

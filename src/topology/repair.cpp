@@ -2,38 +2,57 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/point_hash.h"
 
 namespace evenmesh {
 namespace {
 
-constexpr std::uint32_t fewest_samples = 12;  ///< of a cell that may still be divided: three or four grid cells across
+constexpr std::size_t fewest_samples = 12;  ///< of a cell that may still be divided: three or four grid cells across
 
-/// The cells that have a defect.
+/// A cell that has a defect.
 struct Cell {
-  std::uint32_t samples = 0;
-  double area = 0, farthest = -1;
-  Vec3 moment, far_sample;
+  std::vector<Vec3> samples;
+  double area = 0;
+  Vec3 moment;
   Vec3 centroid(const Vec3& seed) const { return area > 0 ? moment / area : seed; }
+
+  /// Calls use(p) for up to `count` samples, each the farthest from the seed and those before it, as long as they are
+  /// apart.
+  template <typename Use>
+  void for_far_samples(const Vec3& seed, std::size_t count, double apart, const Use& use) const {
+    std::vector<double> distance(samples.size(), std::numeric_limits<double>::infinity());
+    Vec3 last = seed;
+    for (std::size_t n = 0; n < count; ++n) {
+      std::size_t farthest = 0;
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        distance[i] = std::min(distance[i], squared_norm(samples[i] - last));
+        if (distance[i] > distance[farthest]) farthest = i;
+      }
+      if (samples.empty() || distance[farthest] <= (n == 0 ? 0 : apart * apart)) return;
+      last = samples[farthest];
+      use(last);
+    }
+  }
 };
 
 class Planner {
  public:
   Planner(const SampleSet& samples, std::span<const std::uint32_t> labels, std::span<const Vec3> seeds,
-          std::span<const Vec3> ambiguous_faces, const BallIndex& balls, const TopologyRepairOptions& options)
+          std::span<const Vec3> ambiguous_faces, const BallIndex& places, const TopologyRepairOptions& options)
       : samples_(samples),
         labels_(labels),
         seeds_(seeds),
         ambiguous_faces_(ambiguous_faces, options.edge),
-        balls_(balls),
+        places_(places),
         options_(options),
-        new_balls_({}, 0.5 * options.edge),
+        new_places_({}, options.first_radius),
         planned_(ambiguous_faces.size(), 0),
         cells_(seeds.size()),
         asked_(seeds.size(), 0) {
-    repair_.balls = balls.balls();
-    grown_.assign(repair_.balls.size(), 0);
+    repair_.places = places.balls();
+    grown_.assign(repair_.places.size(), 0);
   }
 
   TopologyRepair plan(std::span<const std::pair<std::uint32_t, std::uint32_t>> defects) {
@@ -41,40 +60,30 @@ class Planner {
     for (const auto& [a, b] : defects) defective[a] = defective[b] = 1;
     measure(defective);
     for (const auto& [a, b] : defects) repair_topology(a, b);
-    for (std::size_t l = 0; l < asked_.size(); ++l)
-      if (asked_[l] && cells_[l].farthest > 0) {
-        repair_.seeds.push_back(cells_[l].far_sample);
-        if (l >= options_.given) repair_.seeds.push_back(seeds_[l]);
-      }
+    for (std::size_t l = 0; l < asked_.size(); ++l) {
+      if (!asked_[l]) continue;
+      const std::size_t before = repair_.seeds.size();
+      cells_[l].for_far_samples(seeds_[l], options_.seeds_per_cell, samples_.grid.spacing,
+                                [&](const Vec3& p) { repair_.seeds.push_back(p); });
+      if (l >= options_.given && repair_.seeds.size() > before) repair_.seeds.push_back(seeds_[l]);
+    }
     return std::move(repair_);
   }
 
  private:
-  template <typename Visit>
-  void for_samples(const std::vector<char>& defective, const Visit& visit) const {
+  void measure(const std::vector<char>& defective) {
     for (const SampleBlock& block : samples_.blocks) {
       const Vec3 center = samples_.block_center(block);
-      for (std::uint32_t i = block.begin; i < block.end; ++i)
-        if (defective[labels_[i]]) visit(i, cells_index(i), center + Vec3{samples_.x[i], samples_.y[i], samples_.z[i]});
-    }
-  }
-  std::uint32_t cells_index(std::uint32_t sample) const { return labels_[sample]; }
-
-  void measure(const std::vector<char>& defective) {
-    for_samples(defective, [&](std::uint32_t i, std::uint32_t l, const Vec3& p) {
-      Cell& cell = cells_[l];
-      ++cell.samples;
-      cell.area += samples_.area[i];
-      cell.moment += double(samples_.area[i]) * p;
-    });
-    for_samples(defective, [&](std::uint32_t, std::uint32_t l, const Vec3& p) {
-      Cell& cell = cells_[l];
-      const double distance = squared_norm(p - seeds_[l]);
-      if (distance > cell.farthest) {
-        cell.farthest = distance;
-        cell.far_sample = p;
+      for (std::uint32_t i = block.begin; i < block.end; ++i) {
+        const std::uint32_t l = labels_[i];
+        if (l >= defective.size() || !defective[l]) continue;
+        Cell& cell = cells_[l];
+        const Vec3 p = center + Vec3{samples_.x[i], samples_.y[i], samples_.z[i]};
+        cell.samples.push_back(p);
+        cell.area += samples_.area[i];
+        cell.moment += double(samples_.area[i]) * p;
       }
-    });
+    }
   }
 
   void repair_topology(std::uint32_t a, std::uint32_t b) {
@@ -85,58 +94,56 @@ class Planner {
       asked_[a] = asked_[b] = 1;
       return;
     }
-    bool ambiguous = false;
+    bool is_new = false;
     ambiguous_faces_.near(middle, reach, [&](std::uint32_t i) {
-      ambiguous = true;
-      if (!planned_[i]) {
-        planned_[i] = 1;
-        put_ball(ambiguous_faces_[i]);
-      }
+      if (!planned_[i]) is_new |= put_place(ambiguous_faces_[i]);
+      planned_[i] = 1;
     });
-    if (ambiguous) return;
-    if (std::min(cells_[a].samples, cells_[b].samples) < fewest_samples) return put_ball(middle);
-    if (options_.prefer_balls && unresolved_near(middle)) return put_ball(middle);
+    if (is_new) return;
+    const bool few_samples = std::min(cells_[a].samples.size(), cells_[b].samples.size()) < fewest_samples;
+    if ((few_samples || options_.prefer_places) && unresolved_near(middle) && put_place(middle)) return;
     asked_[a] = asked_[b] = 1;
   }
 
-  /// Far from all ambiguous faces, those under balls included, the grid does resolve the shape, however fine its
-  /// features are.
+  /// Far from all ambiguous faces, those that were filled included, the grid does resolve the shape, however
+  /// fine its features are.
   bool unresolved_near(const Vec3& p) const {
     const double reach = 3 * options_.edge;
-    bool found = ambiguous_faces_.near(p, reach, [](std::uint32_t) { return true; });
-    balls_.near(p, reach, [&](std::uint32_t b) { found |= norm(p - balls_.balls()[b].center) < reach; });
+    bool found = options_.unresolved || ambiguous_faces_.near(p, reach, [](std::uint32_t) { return true; });
+    places_.near(p, reach, [&](std::uint32_t b) { found |= norm(p - places_.balls()[b].center) < reach; });
     return found;
   }
 
-  /// A new ball, unless one is here already: that one grows, once per round.
-  void put_ball(const Vec3& p) {
-    const double start = 0.5 * options_.edge, most = options_.edge, step = 0.125 * options_.edge;
-    bool met = false;
-    balls_.near(p, 0.25 * options_.edge, [&](std::uint32_t b) {
-      Ball& ball = repair_.balls[b];
-      if (met || norm(p - ball.center) > balls_.balls()[b].radius + 0.25 * options_.edge) return;
-      if (!grown_[b] && ball.radius + 0.5 * step > most) return;
+  /// A new place, unless one is here already: that one grows, once per round. Whether it will be new.
+  bool put_place(const Vec3& p) {
+    bool met = false, is_new = true;
+    places_.near(p, 0, [&](std::uint32_t b) {
+      Ball& place = repair_.places[b];
+      if (met || norm(p - place.center) > places_.balls()[b].radius) return;
       met = true;
-      if (grown_[b]) return;
+      is_new = false;
+      if (grown_[b] || place.radius + 0.5 * options_.growth > options_.last_radius) return;
       grown_[b] = 1;
-      ball.radius += step;
+      place.radius += options_.growth;
       repair_.changed.push_back(b);
     });
-    new_balls_.near(p, 0,
-                    [&](std::uint32_t b) { met |= squared_norm(p - new_balls_.balls()[b].center) < start * start; });
-    if (met) return;
-    repair_.changed.push_back(static_cast<std::uint32_t>(repair_.balls.size()));
-    repair_.balls.push_back({p, start});
-    new_balls_.add({p, start});
+    const double apart = 0.7 * options_.first_radius;
+    new_places_.near(p, 0,
+                     [&](std::uint32_t b) { met |= squared_norm(p - new_places_.balls()[b].center) < apart * apart; });
+    if (met) return is_new;
+    repair_.changed.push_back(static_cast<std::uint32_t>(repair_.places.size()));
+    repair_.places.push_back({p, options_.first_radius});
+    new_places_.add({p, options_.first_radius});
+    return true;
   }
 
   const SampleSet& samples_;
   std::span<const std::uint32_t> labels_;
   std::span<const Vec3> seeds_;
   PointHash ambiguous_faces_;
-  const BallIndex& balls_;
+  const BallIndex& places_;
   const TopologyRepairOptions& options_;
-  BallIndex new_balls_;
+  BallIndex new_places_;
   std::vector<char> planned_;  ///< ambiguous faces that have been seen to
   std::vector<Cell> cells_;
   std::vector<char> asked_, grown_;
@@ -148,9 +155,9 @@ class Planner {
 TopologyRepair plan_topology_repair(const SampleSet& samples, std::span<const std::uint32_t> labels,
                                     std::span<const Vec3> seeds,
                                     std::span<const std::pair<std::uint32_t, std::uint32_t>> defects,
-                                    std::span<const Vec3> ambiguous_faces, const BallIndex& balls,
+                                    std::span<const Vec3> ambiguous_faces, const BallIndex& places,
                                     const TopologyRepairOptions& options) {
-  return Planner(samples, labels, seeds, ambiguous_faces, balls, options).plan(defects);
+  return Planner(samples, labels, seeds, ambiguous_faces, places, options).plan(defects);
 }
 
 void clear_around(std::vector<Vec3>& seeds, const BallIndex& balls, std::span<const std::uint32_t> changed,

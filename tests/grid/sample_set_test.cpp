@@ -7,6 +7,7 @@
 #include "core/random.h"
 #include "geometry/primitives.h"
 #include "grid/blocks.h"
+#include "grid/brick_cubes.h"
 #include "grid/coarsen.h"
 #include "grid/density.h"
 #include "grid/sample_checks.h"
@@ -116,6 +117,28 @@ TEST(Density, UnitsDoNotMatterAndAConstantOneGivesAreas) {
   EXPECT_TRUE(same_bytes(one.weight, many.weight));
   const SampleSet constant = weighted(even, [](const Vec3&) { return 7.0; });
   for (std::size_t i = 0; i < even.size(); ++i) ASSERT_NEAR(constant.weight[i], even.area[i], 1e-5f * even.area[i]);
+}
+
+/// Cubes that reach into what was left out are not walked; the others are those of the whole.
+TEST(PartOf, IsWalkedLikeTheWhole) {
+  evenmesh::ExecutionContext context(1);
+  const SampleSet whole = sampled(make_torus(), 60);
+  std::vector<std::uint32_t> blocks;
+  for (std::uint32_t b = 0; b < whole.blocks.size(); ++b)
+    if (whole.block_center(whole.blocks[b]).x > 0.2) blocks.push_back(b);
+  const SampleSet part = part_of(whole, blocks);
+  EXPECT_EQ(part.blocks.size(), blocks.size());
+  EXPECT_FALSE(part.left_out.empty());
+  EXPECT_EQ(part.total_area, whole.total_area);
+  const auto loops = [&](const SampleSet& set) {
+    std::size_t count = 0;
+    CubeWalker walker(set);
+    for (const CubeBrick& brick : cube_bricks(set, context))
+      if (8 * brick.at[0] > 0.6 * set.grid.size[0]) walker.walk(brick, [&](const std::uint32_t*, int) { ++count; });
+    return count;
+  };
+  EXPECT_GT(loops(part), 100u);
+  EXPECT_EQ(loops(part), loops(whole));
 }
 
 TEST(Density, TellsItsMeanAndTheLargest) {

@@ -61,7 +61,7 @@ TEST(TopologyRepair, SurfacesThatTouchAreRegularized) {
   const MeshResult result = meshed(gallery_shape("klein"), {.vertices = 1000});
   expect_good_mesh(result);
   EXPECT_GT(result.report.regularization_rounds, 0u);
-  EXPECT_TRUE(has_finding(result.report, FindingCode::balls_united));
+  EXPECT_TRUE(has_finding(result.report, FindingCode::gaps_filled));
 }
 
 }  // namespace

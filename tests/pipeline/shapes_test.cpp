@@ -166,5 +166,37 @@ TEST(MeshShape, NoSurfaceIsSaid) {
   EXPECT_THROW(meshed(shape_from_expression("r + 1", {}, {{-1, -1, -1}, {1, 1, 1}}), {.vertices = 100}), UnusableInput);
 }
 
+/// A pin that is thinner than an edge gets the vertices it needs: no material beside it.
+TEST(TopologyRepair, PinsAreMeshedWithTheVerticesTheyNeed) {
+  const Shape block =
+      shape_from_expression("min(max(abs(x)-0.5,abs(y)-0.5,abs(z)-0.2), max(sqrt(x^2+y^2)-0.02,abs(z-0.45)-0.3))", {},
+                            Box{{-0.6, -0.6, -0.3}, {0.6, 0.6, 0.85}});
+  const MeshResult result = meshed(block, {.vertices = 2000});
+  expect_good_mesh(result);
+  EXPECT_EQ(result.report.quality.euler, 2);
+  EXPECT_EQ(result.report.quality.components, 1u);
+  EXPECT_FALSE(has_finding(result.report, FindingCode::gaps_filled));
+  double highest = 0;
+  for (const Vec3& v : result.mesh.vertices) {
+    highest = std::max(highest, v.z);
+    if (v.z > 0.25) EXPECT_LT(std::hypot(v.x, v.y), 0.03) << "at " << v.z;
+  }
+  EXPECT_NEAR(highest, 0.75, 0.02);
+}
+
+/// What is too intricate is given up within bounded work, and said.
+TEST(TopologyRepair, WhatTheGridDoesNotResolveIsGivenUpAndSaid) {
+  const Shape foam = shape_from_indicator(
+      [](const Vec3& p) {
+        const double s = std::sin(190 * p.x) * std::cos(170 * p.y) + std::sin(180 * p.z);
+        return norm(p) < 0.8 && s > 0.9;
+      },
+      Box{{-1, -1, -1}, {1, 1, 1}});
+  const MeshResult result = meshed(foam, {.vertices = 500, .resolution = 80, .quality = Quality::fast});
+  EXPECT_TRUE(breaks_a_promise(result.report) || has_finding(result.report, FindingCode::gaps_filled) ||
+              has_finding(result.report, FindingCode::small_components_dropped));
+  EXPECT_LT(result.mesh.vertices.size(), 5000u);
+}
+
 }  // namespace
 }  // namespace evenmesh
