@@ -37,6 +37,7 @@ struct MeshingArguments {
   std::string report, json;
   std::string thickness, outliers, dump_shell;
   std::vector<std::string> regularize;  ///< "global", radius
+  std::string unit;
   std::string max_cycle;
   std::string dump_dexels;
   std::string entry = "map";
@@ -68,6 +69,7 @@ struct Plan {
   MeshOptions options;
   std::optional<double> outliers;    ///< standard deviations
   std::optional<double> regularize;  ///< radius
+  std::optional<LengthUnit> unit;
   MeshOutput output;
   unsigned threads = 0;
   bool on_gl = false;  ///< expressions too

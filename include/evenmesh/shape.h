@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "evenmesh/density.h"
+#include "evenmesh/findings.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/points.h"
 
@@ -37,7 +38,9 @@ struct Shape {
       what;
   /// The solid leaves its bounds and is closed by them on purpose, or may be (then a cut is worth a warning).
   bool capped_by_bounds = false;
-  Winding winding = Winding::any;  ///< of a mesh
+  Winding winding = Winding::any;    ///< of a mesh
+  std::optional<LengthUnit> unit{};  ///< of the model, where it is known; the mesh made of it gets it, too
+  std::vector<Finding> findings{};   ///< what reading it left out or changed; a report of it begins with these
 
   const Mesh* mesh() const {
     const auto* p = std::get_if<std::shared_ptr<const Mesh>>(&what);

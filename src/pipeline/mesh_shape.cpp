@@ -43,7 +43,11 @@ MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& op
   const Tessellation cells = tessellate(std::move(sampling), options, kernels, timer, context);
   const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, options, context); });
   Refined refined = refine(draft, cells, *sampler, options, timer, context);
-  return measure(std::move(refined), draft, cells, options, timer, context);
+  MeshResult result = measure(std::move(refined), draft, cells, options, timer, context);
+  result.mesh.unit = shape.unit;
+  std::vector<Finding>& findings = result.report.findings;
+  findings.insert(findings.begin(), shape.findings.begin(), shape.findings.end());
+  return result;
 }
 
 }  // namespace
