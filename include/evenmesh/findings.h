@@ -29,6 +29,7 @@ enum class FindingCode {
   resolution_limited,
   vertices_limited,
   point_gaps_bridged,
+  one_sided,
   inside_by_vote,
   not_finite,
   closed_by_bounds,

@@ -39,6 +39,10 @@ constexpr std::array kinds{
          "with {vertices:.0f}"},
     Kind{FindingCode::point_gaps_bridged, note, "point-gaps-bridged",
          "points about {spacing:.3g} apart: gaps of up to {gap:.3g} ({voxels:.0f} voxels) are bridged"},
+    Kind{
+        FindingCode::one_sided, warning, "one-sided",
+        "{count:.0f} triangles of the input form a surface with one side only, as a Klein bottle or a Möbius strip: it "
+        "has no inside, and no mesh can face one way on it, so {what}"},
     Kind{FindingCode::inside_by_vote, warning, "inside-by-vote",
          "the input is not closed: inside or outside was settled by vote at {count:.0f} grid points"},
     Kind{FindingCode::not_finite, warning, "not-finite",
@@ -83,7 +87,10 @@ constexpr std::array kinds{
     Kind{FindingCode::self_intersections, broken, "self-intersections",
          "{count:.0f} pairs of triangles intersect each other; ask for more vertices"},
     Kind{FindingCode::no_area, broken, "no-area", "{count:.0f} triangles have no area; ask for more vertices"},
-    Kind{FindingCode::coarser_than_curvature, warning, "coarser-than-curvature", "{share:.0f} TODO"},
+    Kind{FindingCode::coarser_than_curvature, warning, "coarser-than-curvature",
+         "{percent:.0f} % of the edges are longer than the radius of curvature there, so that finer detail is lost: "
+         "about "
+         "{vertices:.2g} vertices would show it"},
     Kind{FindingCode::unit_lost, warning, "unit-lost",
          "{format} files have no place for a unit: the coordinates stay in {unit}, which their reader has to know; "
          "--unit {usual} converts them"},

@@ -36,6 +36,7 @@ void check(const MeshOptions& o) {
 
 MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
                Artifacts& kept) {
+  if (options.method == Method::automatic) require_insides(shape, context);
   StageTimer timer(context);
   const std::unique_ptr<Sampler> sampler = make_sampler(shape, options.bounds, kernels, timer, context);
   Plan plan = make_plan(*sampler, options, timer, context);

@@ -457,7 +457,7 @@ linear_extrude(height = 1) {{ polygon(points = [[0, 0], [3, 0], [3, 3], [1, 1], 
 save("scene/import.csg", 'group() {\n\timport(file = "../off/plain.off", layer = "", origin = [0, 0], timestamp = 0);\n}\n')
 save("scene/root.csg", "sphere(); !cube(); /* rest */ cylinder();\n")
 save("scene/star.csg", "linear_extrude(height = 1) { polygon(points = [[0, 3], [2, -3], [-3, 1], [3, 1], [-2, -3]]); }\n")
-save("scene/bad_hull.csg", "hull() {\n\tcube();\n}\n")
+save("scene/bad_minkowski.csg", "minkowski() {\n\tcube();\n}\n")
 save("scene/bad_flat.csg", "square(size = 1);\n")
 save("scene/bad_nothing.csg", "group();\n")
 save("scene/bad_brace.csg", "union() { cube();\n")
