@@ -91,7 +91,7 @@ void write_all(const MeshingArguments& a, const Operation& operation, const Plan
   if (!a.report.empty()) write_output(a.report, html);
   if (!a.dump_shell.empty()) write_output(a.dump_shell, serialize_vdb(*kept.shell));
   if (!a.dump_dexels.empty()) write_output(a.dump_dexels, serialize_dexels(*kept.dexels));
-  if (!a.json.empty()) write_output(a.json, run_json(result.report, a, operation, plan));
+  if (!a.json.empty()) write_output(a.json, run_json(result, a, operation, plan));
 }
 
 }  // namespace

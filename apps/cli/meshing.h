@@ -84,7 +84,7 @@ Plan check(MeshingArguments& arguments, const Operation& operation);
 int outputs_to_standard_output(const MeshingArguments& arguments);
 
 /// The figures of a run, with the version and the options given; for --json.
-std::string run_json(const Report& report, const MeshingArguments& arguments, const Operation& operation,
+std::string run_json(const MeshResult& result, const MeshingArguments& arguments, const Operation& operation,
                      const Plan& plan);
 
 /// Reads the inputs, makes the shape, meshes it, writes mesh and reports, prints the summary; returns the exit status.

@@ -162,8 +162,10 @@ Plan check(MeshingArguments& a, const Operation& operation) {
   return plan;
 }
 
-std::string run_json(const Report& report, const MeshingArguments& a, const Operation& operation, const Plan& plan) {
-  Json json = Json::parse(report_json(report));
+std::string run_json(const MeshResult& result, const MeshingArguments& a, const Operation& operation,
+                     const Plan& plan) {
+  Json json = Json::parse(report_json(result.report));
+  if (result.mesh.unit) json["unit"] = abbreviation_of(*result.mesh.unit);
   json["version"] = EVENMESH_VERSION;
   json["options"] = options_of_run(a, operation, plan);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

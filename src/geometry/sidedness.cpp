@@ -79,8 +79,8 @@ class FacingSets {
 };
 
 struct Side {
-  std::uint32_t low = 0, high = 0, triangle = 0;
-  bool up = false;
+  std::uint32_t low = 0, high = 0;
+  std::uint32_t code = 0;  ///< twice the triangle, plus 1 where the edge runs upwards
   friend auto operator<=>(const Side&, const Side&) = default;
 };
 
@@ -89,7 +89,7 @@ std::vector<Side> sorted_sides(const Mesh& mesh, const ExecutionContext& context
   sides.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     visit_sides(mesh.triangles[t], [&](std::uint32_t low, std::uint32_t high, bool up) {
-      if (low != high) sides.push_back({low, high, t, up});
+      if (low != high) sides.push_back({low, high, 2 * t + up});
     });
   parallel_sort(context, sides);
   return sides;
@@ -111,7 +111,7 @@ std::size_t one_sided_triangles(const Mesh& mesh, const ExecutionContext& contex
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
     if (end - begin == 2)
-      sets.join(sides[begin].triangle, sides[begin + 1].triangle, sides[begin].up != sides[begin + 1].up);
+      sets.join(sides[begin].code / 2, sides[begin + 1].code / 2, (sides[begin].code ^ sides[begin + 1].code) & 1);
   }
   std::size_t count = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) count += sets.one_sided(t);

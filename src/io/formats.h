@@ -41,7 +41,7 @@ std::string write_off(const Mesh& mesh);
 std::string write_gltf(const Mesh& mesh);
 std::string write_threemf(const Mesh& mesh);
 
-/// True if a name ends in ".xyz", ".pts" or ".pwn", any case.
+/// True if a name ends in ".xyz", ".pts", ".pwn" or ".csv", any case.
 bool is_point_name(std::string_view name);
 /// True if text begins like a point file: three numbers or more on a line, maybe behind lines with their titles and
 /// their count.

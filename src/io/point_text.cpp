@@ -119,8 +119,11 @@ void require_numbers(const Source& source, const Row& row, const char* begin) {
   }
 }
 
-/// Whether a line holds as many words as the next row numbers, and is none itself: titles of the columns.
-bool is_title(const char* p, const char* end) {
+/// How sure one must be that a line holds the titles of columns.
+enum class Titles { surely, likely };
+
+/// Whether a line begins with a word, and the next row with three numbers; surely, if there are as many of each.
+bool is_title(const char* p, const char* end, Titles how) {
   const char* next = next_line(p, end);
   std::string_view line(p, static_cast<std::size_t>(next - p));
   line = line.substr(0, line.find_last_not_of(" \t\r\n") + 1);
@@ -129,7 +132,8 @@ bool is_title(const char* p, const char* end) {
   if (line.empty() || scan_number(q, end, number)) return false;
   const char* rows = skip_to_row(next, end);
   const Row row = rows == end ? Row{} : scan_row(rows, end);
-  if (row.columns < 3 || row.wrong) return false;
+  if (row.columns < 3 || how == Titles::likely) return row.columns >= 3;
+  if (row.wrong) return false;
   std::size_t words = 1;
   const char separator = line.find(';') != line.npos ? ';' : line.find(',') != line.npos ? ',' : ' ';
   for (std::size_t i = 1; i < line.size(); ++i)
@@ -138,8 +142,8 @@ bool is_title(const char* p, const char* end) {
 }
 
 /// Moves behind a line of titles; false if there is none.
-bool skip_title(const char*& p, const char* end) {
-  if (p == end || !is_title(p, end)) return false;
+bool skip_title(const char*& p, const char* end, Titles how) {
+  if (p == end || !is_title(p, end, how)) return false;
   p = skip_to_row(next_line(p, end), end);
   return true;
 }
@@ -156,7 +160,8 @@ void remark_title(const Source& source, const char* at) {
 Layout find_layout(const Source& source) {
   Layout layout;
   layout.begin = skip_to_row(source.begin(), source.end());
-  if (const char* title = layout.begin; skip_title(layout.begin, source.end())) remark_title(source, title);
+  if (const char* title = layout.begin; skip_title(layout.begin, source.end(), Titles::likely))
+    remark_title(source, title);
   layout.count = count_of(layout.begin, source.end());
   if (layout.count) layout.begin = skip_to_row(next_line(layout.begin, source.end()), source.end());
   if (layout.begin == source.end()) fail(source, "holds no points; export the file again");
@@ -273,14 +278,15 @@ void settle_count(const Source& source, const Layout& layout, PointCloud& cloud)
 bool is_point_name(std::string_view name) {
   if (name.size() < 4) return false;
   const std::string_view ending = name.substr(name.size() - 4);
-  return equals_ignoring_case(ending, ".xyz") || equals_ignoring_case(ending, ".pts") || is_pwn(name);
+  return equals_ignoring_case(ending, ".xyz") || equals_ignoring_case(ending, ".pts") ||
+         equals_ignoring_case(ending, ".csv") || is_pwn(name);
 }
 
 bool is_point_text(std::string_view bytes) {
   bytes = bytes.substr(0, 1 << 16);
   const char* end = bytes.data() + bytes.size();
   const char* p = skip_to_row(bytes.data(), end);
-  skip_title(p, end);
+  skip_title(p, end, Titles::surely);
   if (count_of(p, end)) p = skip_to_row(next_line(p, end), end);
   if (p == end) return false;
   const Row row = scan_row(p, end);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <vector>
 
@@ -13,14 +14,6 @@
 namespace evenmesh {
 namespace {
 
-/// A piece of the mesh; what is no root of its vertices has no area.
-struct Piece {
-  double area = 0;
-  Vec3 place;  ///< a corner
-  bool sampled = false;
-};
-using Pieces = std::vector<Piece>;
-
 std::vector<char> sampled_triangles(const SampleSet& samples, std::size_t triangles) {
   std::vector<char> sampled(triangles, 0);
   for (const std::uint32_t t : samples.source)
@@ -28,27 +21,24 @@ std::vector<char> sampled_triangles(const SampleSet& samples, std::size_t triang
   return sampled;
 }
 
-Pieces pieces_of(const Mesh& mesh, UnionFind& vertices, const std::vector<char>& sampled) {
+/// A corner of every piece that is small and has no sample.
+/// @param vertices  those at one place joined, or not
+std::vector<Vec3> unsampled(const Mesh& mesh, UnionFind vertices, const std::vector<char>& sampled, const Box& bounds,
+                            double max_area) {
   for (const Triangle& t : mesh.triangles) {
     vertices.unite(t[0], t[1]);
     vertices.unite(t[0], t[2]);
   }
-  Pieces pieces(mesh.vertices.size());
+  // By root; what has a sample is as good as infinite.
+  std::vector<float> area(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto [a, b, c] = corners_of(mesh, t);
-    Piece& piece = pieces[vertices.find(mesh.triangles[t][0])];
-    piece.area += triangle_area(a, b, c);
-    piece.place = a;
-    piece.sampled = piece.sampled || sampled[t];
+    area[vertices.find(mesh.triangles[t][0])] +=
+        sampled[t] ? std::numeric_limits<float>::infinity() : static_cast<float>(triangle_area(a, b, c));
   }
-  return pieces;
-}
-
-std::vector<Vec3> unsampled(const Pieces& pieces, const Box& bounds, double max_area) {
   std::vector<Vec3> places;
-  for (const Piece& piece : pieces)
-    if (!piece.sampled && piece.area < max_area && piece.area > 0 && bounds.contains(piece.place))
-      places.push_back(piece.place);
+  for (std::size_t v = 0; v < area.size(); ++v)
+    if (area[v] > 0 && area[v] < max_area && bounds.contains(mesh.vertices[v])) places.push_back(mesh.vertices[v]);
   return places;
 }
 
@@ -80,10 +70,8 @@ std::size_t count_outside(const std::vector<Vec3>& places, const SampleSet& samp
 
 std::size_t count_lost_pieces(const Mesh& mesh, const Box& bounds, const SampleSet& samples, double max_area) {
   const std::vector<char> sampled = sampled_triangles(samples, mesh.triangles.size());
-  UnionFind as_they_are(mesh.vertices.size());
-  if (unsampled(pieces_of(mesh, as_they_are, sampled), bounds, max_area).empty()) return 0;
-  UnionFind welded(places_of(mesh.vertices));
-  const std::vector<Vec3> places = unsampled(pieces_of(mesh, welded, sampled), bounds, max_area);
+  if (unsampled(mesh, UnionFind(mesh.vertices.size()), sampled, bounds, max_area).empty()) return 0;
+  const std::vector<Vec3> places = unsampled(mesh, UnionFind(places_of(mesh.vertices)), sampled, bounds, max_area);
   return places.empty() ? 0 : count_outside(places, samples);
 }
 

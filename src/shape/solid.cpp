@@ -28,7 +28,10 @@ Shape compound(Compound::Kind kind, std::vector<Shape> operands, double distance
   std::vector<Finding> findings;
   for (const Shape& operand : made.operands) {
     if (!unit) unit = operand.unit;
-    findings.insert(findings.end(), operand.findings.begin(), operand.findings.end());
+    for (const Finding& finding : operand.findings) {
+      const auto same = [&](const Finding& said) { return said.sentence == finding.sentence; };
+      if (std::none_of(findings.begin(), findings.end(), same)) findings.push_back(finding);  // of copies once
+    }
   }
   const bool known = kind == Compound::Kind::subtract
                          ? is_bounded(made.operands[0])

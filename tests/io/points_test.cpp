@@ -97,6 +97,9 @@ TEST(Points, ErrorsNameTheLineAndSayWhatToDo) {
       point_refusal("1,5 2,5 3,5\n", "a.xyz"),
       "line 1: its numbers stand apart by commas and by blanks; use one of them, and write decimal numbers with a "
       "point");
+  expect_says(point_refusal("x;y;z\n1,5;2,5;3,5\n", "a.csv"), "line 2: its numbers stand apart by commas and by semi");
+  expect_says(point_refusal("x,y,z,of\n1,2,3,house\n", "a.csv"), "line 2: expected a number, found 'house'");
+  expect_says(point_refusal("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", "a.msh"), "is no file of a mesh or points");
   expect_says(point_refusal("1,5;2,5;3,5\n", "a.xyz"), "line 1: its numbers stand apart by commas and by semicolons");
   expect_says(point_refusal("1, 2, 3 house\n", "a.xyz"), "line 1: expected a number, found 'house'");
   expect_says(point_refusal("x y z\nO 0 0\n", "a.xyz"), "line 1: expected a coordinate of the point, found 'x'");
