@@ -75,7 +75,8 @@ Mesh read_mesh_file(const std::string& command, const std::string& name, Executi
   std::variant<Mesh, PointCloud> contents = read_file(command, name, context);
   if (Mesh* mesh = std::get_if<Mesh>(&contents)) return std::move(*mesh);
   throw UnusableInput(
-      fmt::format("{}: holds points, not a mesh; make a mesh of it first: evenmesh mesh {} -o x.ply", name, name));
+      fmt::format("{}: holds no triangles, only {} points; make a mesh of it first: evenmesh mesh {} -o x.ply", name,
+                  std::get<PointCloud>(contents).points.size(), name));
 }
 
 std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::string& name,

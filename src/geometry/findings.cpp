@@ -90,7 +90,7 @@ constexpr std::array kinds{
     Kind{FindingCode::coarser_than_curvature, warning, "coarser-than-curvature",
          "{percent:.0f} % of the edges are longer than the radius of curvature there, so that finer detail is lost: "
          "about "
-         "{vertices:.2g} vertices would show it"},
+         "{vertices:.0f} vertices would show it"},
     Kind{FindingCode::unit_lost, warning, "unit-lost",
          "{format} files have no place for a unit: the coordinates stay in {unit}, which their reader has to know; "
          "--unit {usual} converts them"},

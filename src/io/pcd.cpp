@@ -79,7 +79,7 @@ Header parse_header(const Source& source) {
     const auto words = words_of({p, static_cast<std::size_t>(next - p)});
     p = next;
     if (words.empty() || words[0].starts_with('#')) continue;
-    const std::string_view key = words[0], value = words.size() > 1 ? words[1] : "";
+    const std::string_view key = words[0], value = words.size() > 1 ? words[1] : key.substr(key.size());
     if (key == "FIELDS" || key == "COLUMNS") {
       for (std::size_t i = 1; i < words.size(); ++i) header.fields.emplace_back().name = words[i];
     } else if (key == "SIZE") {

@@ -36,7 +36,6 @@ void check(const MeshOptions& o) {
 
 MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
                Artifacts& kept) {
-  if (options.method == Method::automatic) require_insides(shape, context);
   StageTimer timer(context);
   const std::unique_ptr<Sampler> sampler = make_sampler(shape, options.bounds, kernels, timer, context);
   Plan plan = make_plan(*sampler, options, timer, context);
@@ -44,11 +43,7 @@ MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& op
   const Tessellation cells = tessellate(std::move(sampling), options, kernels, timer, context);
   const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, options, context); });
   Refined refined = refine(draft, cells, *sampler, options, timer, context);
-  MeshResult result = measure(std::move(refined), draft, cells, options, timer, context);
-  result.mesh.unit = shape.unit;
-  std::vector<Finding>& findings = result.report.findings;
-  findings.insert(findings.begin(), shape.findings.begin(), shape.findings.end());
-  return result;
+  return measure(std::move(refined), draft, cells, options, timer, context);
 }
 
 }  // namespace
@@ -56,7 +51,14 @@ MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& op
 MeshResult mesh_with(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
                      Artifacts& kept) {
   check(options);
-  return with_threads(context, [&] { return run(kernels, shape, options, context, kept); });
+  MeshResult result = with_threads(context, [&] {
+    if (options.method != Method::raster) require_insides(shape, context);
+    return run(kernels, shape, options, context, kept);
+  });
+  result.mesh.unit = shape.unit;
+  std::vector<Finding>& findings = result.report.findings;
+  findings.insert(findings.begin(), shape.findings.begin(), shape.findings.end());
+  return result;
 }
 
 MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, ExecutionContext& context, Artifacts* kept) {

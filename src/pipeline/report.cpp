@@ -69,7 +69,7 @@ class Judge {
     judge_triangles();
     if (coarse.share > notable_share)
       say(FindingCode::coarser_than_curvature,
-          {{"percent", 100 * coarse.share}, {"vertices", coarse.factor * number(quality_.vertices)}});
+          {{"percent", 100 * coarse.share}, {"vertices", rounded(coarse.factor * number(quality_.vertices))}});
     const double asked = number(report_.seeds_asked), made = number(quality_.vertices);
     if (std::abs(made - asked) > 0.005 * asked)
       say(FindingCode::vertex_count,
@@ -79,6 +79,11 @@ class Judge {
 
  private:
   static double number(std::size_t n) { return static_cast<double>(n); }
+  /// To two digits.
+  static double rounded(double n) {
+    const double digit = std::pow(10.0, std::floor(std::log10(n)) - 1);
+    return std::ceil(n / digit) * digit;
+  }
   void say(FindingCode code, std::vector<std::pair<std::string, FindingValue>> values = {}) {
     findings_.push_back(make_finding(code, std::move(values)));
   }

@@ -245,10 +245,11 @@ void refuse_drawing(const Source& source, const CsgNode& node) {
   const std::string_view ending = std::string_view(file->text).substr(file->text.size() - 4);
   for (const auto& [extension, kind] : {std::pair{".dxf", "DXF"}, std::pair{".svg", "SVG"}})
     if (equals_ignoring_case(ending, extension))
-      fail_in_csg(source, node.at,
-                  fmt::format("import reads meshes, {} is a {} drawing; let OpenSCAD extrude it, export that part as a "
-                              "mesh and import it",
-                              evenmesh::quoted(file->text), kind));
+      fail_in_csg(
+          source, node.at,
+          fmt::format("import reads meshes, {} is a drawing ({}); let OpenSCAD extrude it, export that part as a "
+                      "mesh and import it",
+                      evenmesh::quoted(file->text), kind));
 }
 
 void refuse_csg_node(const Source& source, const CsgNode& node) {

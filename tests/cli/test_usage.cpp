@@ -36,7 +36,8 @@ TEST_F(Usage, HelpOfMeshDescribesEveryOptionOnce) {
         "--start",       "--seed",       "--connect",     "--topology",  "--features",   "--density",
         "--threads",     "--backend",    "--report",      "--json",      "--quiet",      "--verbose",
         "--progress",    "--expression", "--define",      "--entry",     "--raster",     "--raster-vertices",
-        "--dump-dexels", "--dump-shell", "--outliers",    "--placement", "--max-cycle",  "--format"}) {
+        "--dump-dexels", "--dump-shell", "--outliers",    "--placement", "--max-cycle",  "--format",
+        "--unit"}) {
     const std::size_t first = help.find(std::string(option) + " ");
     ASSERT_TRUE(first != std::string::npos || help.find(std::string(option) + "\n") != std::string::npos) << option;
   }

@@ -298,8 +298,8 @@ TEST_F(Csg, OffsetsOfFlatShapes) {
 }
 
 TEST_F(Csg, DrawingsAreNamed) {
-  says("linear_extrude(height = 1) { import(file = \"a.dxf\", layer = \"\"); }", "'a.dxf' is a DXF drawing");
-  says("import(file = \"a.SVG\");", "'a.SVG' is a SVG drawing");
+  says("linear_extrude(height = 1) { import(file = \"a.dxf\", layer = \"\"); }", "'a.dxf' is a drawing (DXF)");
+  says("import(file = \"a.SVG\");", "'a.SVG' is a drawing (SVG)");
   says("linear_extrude(height = 1) { text(text = \"a\"); }", "the OpenSCAD node 'text' is not supported");
 }
 
