@@ -12,6 +12,7 @@
 #include "input.h"
 #include "interrupt.h"
 #include "output.h"
+#include "terminal.h"
 #include "values.h"
 
 namespace evenmesh::cli {
@@ -75,13 +76,24 @@ std::string json(const MeshDistance& d) {
   return object.dump(2) + "\n";
 }
 
+/// Brings a mesh to the unit of the reference, where both are known.
+void convert(Mesh& mesh, const Mesh& reference, const std::string& name) {
+  if (!mesh.unit || !reference.unit || mesh.unit == reference.unit) return;
+  const double factor = conversion_factor(*mesh.unit, *reference.unit);
+  for (Vec3& v : mesh.vertices) v *= factor;
+  say("note",
+      fmt::format("{} is converted from {} to the {} of B", name, plural_of(*mesh.unit), plural_of(*reference.unit)));
+  mesh.unit = reference.unit;
+}
+
 int run_compare(const CompareArguments& a) {
   const CompareOptions options{.samples = whole_number("--samples", a.samples, 1, 1'000'000'000)};
   if (a.a == "-" && a.b == "-") throw InvalidInput("only one of the two meshes can come from standard input");
   ExecutionContext context(static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024)));
   const CancelOnInterrupt interrupt(context);
-  const Mesh first = read_mesh_file("compare", a.a, context);
+  Mesh first = read_mesh_file("compare", a.a, context);
   const Mesh second = read_mesh_file("compare", a.b, context);
+  convert(first, second, a.a);
   const MeshDistance distance = compare_meshes(first, second, options, context);
   write_output("-", a.json ? json(distance) : text(distance));
   return Status::done;

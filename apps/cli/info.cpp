@@ -28,9 +28,10 @@ using Json = nlohmann::ordered_json;
 std::string describe(const Mesh& mesh, bool json, ExecutionContext& context) {
   const MeshQuality quality = measure_quality(mesh, context);
   const std::size_t pairs = self_intersections(mesh, context).size();
-  if (!json) return table(quality, pairs);
+  if (!json) return table(quality, pairs, mesh.unit);
   auto figures = Json::parse(quality_json(quality));
   figures["self_intersections"] = pairs;
+  if (mesh.unit) figures["unit"] = abbreviation_of(*mesh.unit);
   return figures.dump(2) + "\n";
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "evenmesh/io.h"
+#include "terminal.h"
 #include "values.h"
 
 namespace evenmesh::cli {
@@ -71,14 +72,19 @@ void check_drawing(const InputArguments& input) {
 }  // namespace
 
 Mesh read_mesh_file(const std::string& command, const std::string& name, ExecutionContext& context) {
-  check_file(command, name);
-  return read_mesh(name, context);
+  std::variant<Mesh, PointCloud> contents = read_file(command, name, context);
+  if (Mesh* mesh = std::get_if<Mesh>(&contents)) return std::move(*mesh);
+  throw UnusableInput(
+      fmt::format("{}: holds no triangles, only {} points; make a mesh of it first: evenmesh mesh {} -o x.ply", name,
+                  std::get<PointCloud>(contents).points.size(), name));
 }
 
 std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::string& name,
                                          ExecutionContext& context) {
   check_file(command, name);
-  return read_mesh_or_points(name, context);
+  FileContents contents = read_mesh_or_points(name, context);
+  for (const Finding& finding : contents.findings) say(finding);
+  return std::move(contents.what);
 }
 
 void check_input(const InputArguments& input, const InputCount& count) {

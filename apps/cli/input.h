@@ -43,10 +43,10 @@ std::map<std::string, double> parameters_of(const InputArguments& input);
 /// @throws UnusableInput  a file that cannot be read
 std::vector<Shape> read_shapes(const InputArguments& input, ExecutionContext& context);
 
-/// A mesh file, or standard input for "-". Throws like read_shapes.
+/// A mesh file, or standard input for "-"; what was left out of it is said. Throws like read_shapes.
 Mesh read_mesh_file(const std::string& command, const std::string& name, ExecutionContext& context);
 
-/// A file of a mesh or of points, or standard input for "-". Throws like read_shapes.
+/// A file of a mesh or of points, or standard input for "-"; what was left out of it is said. Throws like read_shapes.
 std::variant<Mesh, PointCloud> read_file(const std::string& command, const std::string& name,
                                          ExecutionContext& context);
 

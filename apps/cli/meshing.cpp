@@ -27,7 +27,10 @@ Shape without_outliers(const Shape& shape, double deviations, Talk talk, Executi
   const std::size_t given = shape.points()->points.size();
   PointCloud cloud = remove_outliers(*shape.points(), {.deviations = deviations}, context);
   if (talk != Talk::quiet) say("note", fmt::format("{} of {} points left out", given - cloud.points.size(), given));
-  return shape_from_points(std::move(cloud), shape.name);
+  Shape rest = shape_from_points(std::move(cloud), shape.name);
+  rest.unit = shape.unit;
+  rest.findings = shape.findings;
+  return rest;
 }
 
 /// Expressions move to OpenGL; inputs that have none are said and left as they are.
@@ -46,11 +49,7 @@ bool tell_findings(const Report& report, Talk talk) {
   for (const Finding& finding : report.findings) {
     const bool broken = finding.severity == Severity::broken_promise;
     kept = kept && !broken;
-    if (broken) {
-      say("promise not kept", finding.sentence);
-    } else if (talk != Talk::quiet) {
-      say(finding.severity == Severity::note ? "note" : "warning", finding.sentence);
-    }
+    if (broken || talk != Talk::quiet) say(finding);
   }
   return kept;
 }
@@ -67,7 +66,7 @@ Artifacts asked_for(const MeshingArguments& a) {
 /// What is meshed; operations may change the options, once the shape is known.
 Shape make_shape(const MeshingArguments& a, const Operation& operation, const Plan& plan, MeshOptions& options,
                  ExecutionContext& context) {
-  std::vector<Shape> shapes = read_shapes(a.input, context);
+  std::vector<Shape> shapes = in_one_unit(read_shapes(a.input, context), plan.unit);
   if (plan.on_gl) move_to_gl(shapes, a.input.options.device, plan.talk);
   Shape shape = operation.combine ? operation.combine(std::move(shapes)) : std::move(shapes.at(0));
   if (plan.outliers) shape = without_outliers(shape, *plan.outliers, plan.talk, context);
@@ -92,7 +91,7 @@ void write_all(const MeshingArguments& a, const Operation& operation, const Plan
   if (!a.report.empty()) write_output(a.report, html);
   if (!a.dump_shell.empty()) write_output(a.dump_shell, serialize_vdb(*kept.shell));
   if (!a.dump_dexels.empty()) write_output(a.dump_dexels, serialize_dexels(*kept.dexels));
-  if (!a.json.empty()) write_output(a.json, run_json(result.report, a, operation, plan));
+  if (!a.json.empty()) write_output(a.json, run_json(result, a, operation, plan));
 }
 
 }  // namespace
@@ -114,6 +113,9 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
     auto& seconds = result.report.seconds;
     seconds.insert(seconds.begin(), {"read", reading});
     require_kept(a, kept);
+    // Who names a unit knows which one the file is in.
+    const std::optional<Finding> remark = unit_remark(result.mesh, plan.output.format);
+    if (remark && !(plan.unit && remark->code == FindingCode::unit_lost)) result.report.findings.push_back(*remark);
     if (!a.report.empty()) html = report_html(result, shape.name, context, kept);
   }
   write_all(a, operation, plan, result, kept, html);

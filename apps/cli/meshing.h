@@ -37,6 +37,7 @@ struct MeshingArguments {
   std::string report, json;
   std::string thickness, outliers, dump_shell;
   std::vector<std::string> regularize;  ///< "global", radius
+  std::string unit;
   std::string max_cycle;
   std::string dump_dexels;
   std::string entry = "map";
@@ -68,6 +69,7 @@ struct Plan {
   MeshOptions options;
   std::optional<double> outliers;    ///< standard deviations
   std::optional<double> regularize;  ///< radius
+  std::optional<LengthUnit> unit;
   MeshOutput output;
   unsigned threads = 0;
   bool on_gl = false;  ///< expressions too
@@ -82,7 +84,7 @@ Plan check(MeshingArguments& arguments, const Operation& operation);
 int outputs_to_standard_output(const MeshingArguments& arguments);
 
 /// The figures of a run, with the version and the options given; for --json.
-std::string run_json(const Report& report, const MeshingArguments& arguments, const Operation& operation,
+std::string run_json(const MeshResult& result, const MeshingArguments& arguments, const Operation& operation,
                      const Plan& plan);
 
 /// Reads the inputs, makes the shape, meshes it, writes mesh and reports, prints the summary; returns the exit status.

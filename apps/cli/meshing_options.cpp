@@ -23,6 +23,9 @@ void add_what(CLI::App& app, MeshingArguments& a) {
   option(
       "--bounds", a.bounds, "BOX",
       "x0,y0,z0,x1,y1,z1 in model units: where the surface is sought;\na surface cut by it is capped; default: found");
+  option("--unit", a.unit, "UNIT",
+         "unit of all lengths, in the output and in options: micron|mm|cm|m|in|ft. Inputs\nin another one (3MF, GLB, "
+         "scenes) are converted, others taken to be in it;\ndefault: that of the input");
   option("--topology", a.topology, "RULE",
          "keep: add vertices where the topology needs them; simplify: keep the number of\nvertices and fill small "
          "tunnels and gaps of the solid instead; default keep");

@@ -114,6 +114,7 @@ Json options_of_run(const MeshingArguments& a, const Operation& operation, const
   json.update(Json::parse(options_json(plan.options)));
   if (plan.outliers) json["outliers"] = *plan.outliers;
   if (plan.regularize) json["regularize"] = {a.regularize[0], *plan.regularize};
+  if (plan.unit) json["unit"] = abbreviation_of(*plan.unit);
   json["backend"] = a.backend;
   json["threads"] = plan.threads;
   return json;
@@ -138,6 +139,10 @@ Plan check(MeshingArguments& a, const Operation& operation) {
     plan.regularize = real_number("--regularize global", a.regularize[1]);
     if (!(*plan.regularize > 0)) throw InvalidInput("--regularize global takes a radius above 0");
   }
+  if (!a.unit.empty()) {
+    plan.unit = unit_of_name(a.unit);
+    if (!plan.unit) throw InvalidInput(fmt::format("--unit takes one of {}, not '{}'", unit_names(), a.unit));
+  }
   plan.threads = static_cast<unsigned>(whole_number("-j", a.threads, 0, 1024));
   choice("--progress", a.progress, {"auto", "on", "off"});
   plan.on_gl = choice("--backend", a.backend, {"cpu", "gl"}) == 1;
@@ -157,8 +162,10 @@ Plan check(MeshingArguments& a, const Operation& operation) {
   return plan;
 }
 
-std::string run_json(const Report& report, const MeshingArguments& a, const Operation& operation, const Plan& plan) {
-  Json json = Json::parse(report_json(report));
+std::string run_json(const MeshResult& result, const MeshingArguments& a, const Operation& operation,
+                     const Plan& plan) {
+  Json json = Json::parse(report_json(result.report));
+  if (result.mesh.unit) json["unit"] = abbreviation_of(*result.mesh.unit);
   json["version"] = EVENMESH_VERSION;
   json["options"] = options_of_run(a, operation, plan);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

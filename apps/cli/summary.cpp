@@ -64,7 +64,7 @@ std::string summary(const Report& report, const std::string& output, double seco
   return text;
 }
 
-std::string table(const MeshQuality& q, std::size_t self_intersections) {
+std::string table(const MeshQuality& q, std::size_t self_intersections, std::optional<LengthUnit> unit) {
   std::string text;
   text += row("vertices", grouped(q.vertices) +
                               (q.unused_vertices ? fmt::format(" (and {} unused)", grouped(q.unused_vertices)) : ""));
@@ -82,6 +82,7 @@ std::string table(const MeshQuality& q, std::size_t self_intersections) {
   text += row("area", fmt::format("{:.8g}", q.area));
   text += row("volume", fmt::format("{:.8g}", q.volume));
   text += row("size", size_line(q.bounds));
+  if (unit) text += row("unit", std::string(word_of(*unit)));
   return text;
 }
 

@@ -2,6 +2,7 @@
 /// Figures of a mesh or a run as text for people.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "evenmesh/measure.h"
@@ -20,7 +21,7 @@ std::string topology(const MeshQuality& quality);
 std::string summary(const Report& report, const std::string& output, double seconds);
 
 /// The table of `evenmesh info`, for meshes and for points.
-std::string table(const MeshQuality& quality, std::size_t self_intersections);
+std::string table(const MeshQuality& quality, std::size_t self_intersections, std::optional<LengthUnit> unit);
 std::string table(const PointCloud& cloud, double spacing);
 
 }  // namespace evenmesh::cli

@@ -62,4 +62,9 @@ void say(std::string_view kind, std::string_view sentence) {
   fmt::print(stderr, "{}: {}\n", kind, sentence);
 }
 
+void say(const Finding& finding) {
+  const bool broken = finding.severity == Severity::broken_promise;
+  say(broken ? "promise not kept" : finding.severity == Severity::note ? "note" : "warning", finding.sentence);
+}
+
 }  // namespace evenmesh::cli

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "evenmesh/execution_context.h"
+#include "evenmesh/findings.h"
 
 namespace evenmesh::cli {
 
@@ -37,5 +38,7 @@ class Terminal {
 
 /// "error: …", "warning: …" as one line on standard error.
 void say(std::string_view kind, std::string_view sentence);
+/// The finding's sentence, as a note, a warning, or a promise not kept.
+void say(const Finding& finding);
 
 }  // namespace evenmesh::cli

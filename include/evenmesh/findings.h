@@ -20,10 +20,16 @@ enum class Severity {
 
 /// One for every kind of finding; finding_name() gives the name that files use.
 enum class FindingCode {
+  vertices_not_finite,
+  polygons_not_simple,
+  objects_left_out,
+  line_skipped,
+  unit_converted,
   fineness_estimated,
   resolution_limited,
   vertices_limited,
   point_gaps_bridged,
+  one_sided,
   inside_by_vote,
   not_finite,
   closed_by_bounds,
@@ -43,7 +49,9 @@ enum class FindingCode {
   not_manifold,
   not_closed,
   self_intersections,
-  no_area
+  no_area,
+  coarser_than_curvature,
+  unit_lost
 };
 
 /// A number (lengths in model units) or a word.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
@@ -56,6 +57,12 @@ Shape read_shape(const std::string& name, const InputOptions& options = {},
 /// @param folder  that relative paths in a scene start from
 Shape parse_shape(std::string_view bytes, const std::string& name, const InputOptions& options = {},
                   const std::filesystem::path& folder = {}, ExecutionContext& context = ExecutionContext::silent());
+
+/// Shapes with all lengths in one unit: the one wanted, or else that of the first shape that has one.
+///
+/// Shapes in another unit are scaled, with a finding; those of which none is known are taken to be in this one.
+/// @throws InvalidInput  as transformed()
+std::vector<Shape> in_one_unit(std::vector<Shape> shapes, std::optional<LengthUnit> wanted = {});
 
 /// A pair of shaders, and what they draw (raster.h).
 struct Drawing {

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
+
+#include "evenmesh/units.h"
 
 namespace evenmesh {
 
@@ -112,6 +115,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
+  std::optional<LengthUnit> unit{};  ///< of the coordinates, where it is known
 
   /// Box of the vertices that at least one triangle uses.
   Box bounds() const;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "evenmesh/density.h"
+#include "evenmesh/findings.h"
 #include "evenmesh/mesh.h"
 #include "evenmesh/points.h"
 
@@ -37,7 +38,9 @@ struct Shape {
       what;
   /// The solid leaves its bounds and is closed by them on purpose, or may be (then a cut is worth a warning).
   bool capped_by_bounds = false;
-  Winding winding = Winding::any;  ///< of a mesh
+  Winding winding = Winding::any;    ///< of a mesh
+  std::optional<LengthUnit> unit{};  ///< of the model, where it is known; the mesh made of it gets it, too
+  std::vector<Finding> findings{};   ///< what reading it left out or changed; a report of it begins with these
 
   const Mesh* mesh() const {
     const auto* p = std::get_if<std::shared_ptr<const Mesh>>(&what);
@@ -76,7 +79,8 @@ Shape shape_from_points(PointCloud points, std::string name = "points");
 /// Operators + - * / ^ (right-associative, binds tighter than unary minus), implicit multiplication (4x, 2(x+1), x y);
 /// functions sin cos tan asin acos atan atan2 exp log sqrt abs min max floor mod sign; constants pi, e; `parameters`.
 /// One '=' is allowed: "a = b" stands for a − (b).
-/// @param bounds  empty: a box is sought (interval arithmetic, starting from the origin) when the shape is sampled
+/// @param bounds  empty: a box is sought (interval arithmetic, or at points within ±1024 where that proves too little)
+/// when the shape is sampled
 /// @throws InvalidInput  with the column (1-based) and a caret under it
 Shape shape_from_expression(std::string_view expression, const std::map<std::string, double>& parameters = {},
                             const Box& bounds = {});

@@ -65,4 +65,8 @@ Shape opening(Shape shape, double radius);
 /// @throws InvalidInput  the transform is singular or not finite, or would stretch an offset unevenly
 Shape transformed(const Shape& shape, const Affine& transform);
 
+/// The shape scaled to another unit, with a finding that says so; as it is where its own unit is not known.
+/// @throws InvalidInput  as transformed()
+Shape converted(const Shape& shape, LengthUnit unit);
+
 }  // namespace evenmesh

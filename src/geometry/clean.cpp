@@ -4,22 +4,11 @@
 
 #include "evenmesh/error.h"
 #include "evenmesh/repair.h"
+#include "geometry/places.h"
 #include "geometry/triangle.h"
 
 namespace evenmesh {
 namespace {
-
-/// For every vertex the lowest one in the same place.
-std::vector<std::uint32_t> places_of(const std::vector<Vec3>& vertices) {
-  std::vector<std::uint32_t> order(vertices.size()), place(vertices.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto key = [&](std::uint32_t v) { return std::tuple(vertices[v].x, vertices[v].y, vertices[v].z); };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    place[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? place[order[i - 1]] : order[i];
-  return place;
-}
 
 /// Without area, up to rounding.
 bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {

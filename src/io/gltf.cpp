@@ -35,7 +35,7 @@ class SceneReader {
     } else {
       walk(roots(nodes), nodes);
     }
-    require_finite(source_, mesh_.vertices);  // transforms may overflow
+    mesh_.unit = LengthUnit::meter;  // by definition (glTF 2.0, §3.4)
     return std::move(mesh_);
   }
 
@@ -188,15 +188,17 @@ std::string write_gltf(const Mesh& mesh) {
   const auto triple = [](const Vec3& v) {
     return fmt::format("[{},{},{}]", static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
   };
+  const double scale = mesh.unit ? conversion_factor(*mesh.unit, LengthUnit::meter) : 1;
+  const std::string scaling = scale == 1 ? "" : fmt::format(R"(,"scale":[{0},{0},{0}])", scale);
   const std::size_t points = 12 * mesh.vertices.size(), indices = 12 * mesh.triangles.size();
   std::string json = fmt::format(
-      R"({{"asset":{{"version":"2.0","generator":"evenmesh"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],)"
+      R"({{"asset":{{"version":"2.0","generator":"evenmesh"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0{}}}],)"
       R"("meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1,"mode":4}}]}}],)"
       R"("buffers":[{{"byteLength":{}}}],"bufferViews":[{{"buffer":0,"byteOffset":0,"byteLength":{},"target":34962}},)"
       R"({{"buffer":0,"byteOffset":{},"byteLength":{},"target":34963}}],)"
       R"("accessors":[{{"bufferView":0,"componentType":5126,"count":{},"type":"VEC3","min":{},"max":{}}},)"
       R"({{"bufferView":1,"componentType":5125,"count":{},"type":"SCALAR"}}]}})",
-      points + indices, points, points, indices, mesh.vertices.size(), triple(box.lo), triple(box.hi),
+      scaling, points + indices, points, points, indices, mesh.vertices.size(), triple(box.lo), triple(box.hi),
       3 * mesh.triangles.size());
   json.resize((json.size() + 3) / 4 * 4, ' ');
   const std::size_t size = 12 + 8 + json.size() + 8 + points + indices;

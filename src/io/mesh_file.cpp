@@ -36,19 +36,11 @@ Mesh read_as(MeshFormat format, const Source& source) {
   throw InvalidInput("the mesh format is none of the six; take one of MeshFormat");
 }
 
-Mesh read_triangles(MeshFormat format, const Source& source) {
-  Mesh mesh = read_as(format, source);
-  if (mesh.triangles.empty() && !mesh.vertices.empty()) {
-    fail(source, fmt::format("holds no triangles, only {} points; export the file again, with its faces, or its points "
-                             "as PLY or XYZ",
-                             mesh.vertices.size()));
-  }
-  if (mesh.triangles.empty()) fail(source, "holds no triangles; export the file again, with its faces");
-  return mesh;
-}
-
-/// Normals that are not finite say nothing and become zero; where all are, there are none.
-PointCloud with_known_normals(PointCloud cloud) {
+/// Points that are not finite are left out. Normals that are not say nothing and become zero; where all are, there are
+/// none.
+PointCloud checked(const Source& source, PointCloud cloud) {
+  leave_out_infinite(source, cloud);
+  if (cloud.points.empty()) fail(source, "holds no point whose coordinates are all finite numbers; export it again");
   bool any = false;
   for (Vec3& n : cloud.normals) {
     if (!is_finite(n)) n = {};
@@ -58,11 +50,33 @@ PointCloud with_known_normals(PointCloud cloud) {
   return cloud;
 }
 
+MeshOrPoints read_mesh_format(MeshFormat format, const Source& source) {
+  Mesh mesh = read_as(format, source);
+  if (mesh.triangles.empty() && !mesh.vertices.empty()) {
+    if (format == MeshFormat::off) return checked(source, {std::move(mesh.vertices), {}});
+    if (format == MeshFormat::obj) return checked(source, obj_points(source, std::move(mesh.vertices)));
+  }
+  // Of loose triangles the reader has left out some already.
+  const bool any = !mesh.triangles.empty() || !source.findings->empty();
+  leave_out_infinite(source, mesh);
+  if (!mesh.triangles.empty()) return mesh;
+  if (any) fail(source, "holds no triangle whose coordinates are all finite numbers; export the file again");
+  if (mesh.vertices.empty()) fail(source, "holds no triangles; export the file again, with its faces");
+  fail(source, fmt::format("holds no triangles, only {} points; export the file again, with its faces, or its points "
+                           "as PLY or XYZ",
+                           mesh.vertices.size()));
+}
+
 MeshOrPoints read_ply_file(const Source& source) {
   PlyContents contents = read_ply(source);
-  if (!contents.mesh.triangles.empty()) return std::move(contents.mesh);
+  if (!contents.mesh.triangles.empty()) {
+    leave_out_infinite(source, contents.mesh);
+    if (contents.mesh.triangles.empty())
+      fail(source, "holds no triangle whose coordinates are all finite numbers; export the file again");
+    return std::move(contents.mesh);
+  }
   if (contents.mesh.vertices.empty()) fail(source, "holds no triangles and no points; export the file again");
-  return with_known_normals({std::move(contents.mesh.vertices), std::move(contents.normals)});
+  return checked(source, {std::move(contents.mesh.vertices), std::move(contents.normals)});
 }
 
 /// Tables of numbers tell little, so that the name has a say, too: OFF without its first word is one as well.
@@ -75,27 +89,31 @@ MeshOrPoints read_recognized(const Source& source) {
   if (!format && is_dexel_file(source.bytes)) {
     fail(source, "holds dexels, not a mesh; make a mesh of it first, or name it under 'dexels' in a scene");
   }
-  if (!format && is_point_file(source)) return with_known_normals(read_point_text(source));
+  if (is_pcd(source.bytes)) return checked(source, read_pcd(source));
+  if (!format && is_point_file(source)) return checked(source, read_point_text(source));
   if (!format) format = format_of_name(source.name);
   if (!format) {
     fail(source,
-         "is no file of a mesh or points that can be recognized; PLY, OBJ, STL, OFF, GLB, glTF, 3MF, XYZ, PTS "
-         "and PWN can be read");
+         "is no file of a mesh or points that can be recognized; PLY, OBJ, STL, OFF, GLB, glTF, 3MF, XYZ, PTS, "
+         "PWN and PCD can be read");
   }
-  return format == MeshFormat::ply ? read_ply_file(source) : read_triangles(*format, source);
+  return format == MeshFormat::ply ? read_ply_file(source) : read_mesh_format(*format, source);
 }
 
-MeshOrPoints parse(Source source) {
+FileContents parse(Source source) {
+  FileContents contents;
+  source.findings = &contents.findings;
   if (source.bytes.starts_with("\xef\xbb\xbf")) source.bytes.remove_prefix(3);  // byte order mark of UTF-8
   if (source.bytes.empty()) fail(source, "is empty; export it again");
   try {
-    return read_recognized(source);
+    contents.what = read_recognized(source);
+    return contents;
   } catch (const std::bad_alloc&) {
     fail(source, "does not fit into the memory; reduce it or use a larger machine");
   }
 }
 
-MeshOrPoints load(const std::filesystem::path& path, ExecutionContext& context) {
+FileContents load(const std::filesystem::path& path, ExecutionContext& context) {
   context.throw_if_cancelled();
   const std::string name = name_of_input(path);
   try {
@@ -107,14 +125,14 @@ MeshOrPoints load(const std::filesystem::path& path, ExecutionContext& context) 
   }
 }
 
-Mesh mesh_of(MeshOrPoints contents, std::string_view name) {
-  if (Mesh* mesh = std::get_if<Mesh>(&contents)) return std::move(*mesh);
+Mesh mesh_of(FileContents contents, std::string_view name) {
+  if (Mesh* mesh = std::get_if<Mesh>(&contents.what)) return std::move(*mesh);
   throw UnusableInput(fmt::format("{}: holds no triangles, only {} points; export the file again, with its faces", name,
-                                  std::get<PointCloud>(contents).points.size()));
+                                  std::get<PointCloud>(contents.what).points.size()));
 }
 
-PointCloud points_of(MeshOrPoints contents, std::string_view name) {
-  if (PointCloud* cloud = std::get_if<PointCloud>(&contents)) return std::move(*cloud);
+PointCloud points_of(FileContents contents, std::string_view name) {
+  if (PointCloud* cloud = std::get_if<PointCloud>(&contents.what)) return std::move(*cloud);
   throw UnusableInput(
       fmt::format("{}: holds a mesh, not points; save its vertices as XYZ, or as PLY without faces", name));
 }
@@ -157,14 +175,32 @@ PointCloud read_points(const std::filesystem::path& path, ExecutionContext& cont
   return points_of(load(path, context), name_of_input(path));
 }
 
-std::variant<Mesh, PointCloud> parse_mesh_or_points(std::string_view bytes, std::string_view name,
-                                                    ExecutionContext& context) {
+FileContents parse_mesh_or_points(std::string_view bytes, std::string_view name, ExecutionContext& context) {
   context.throw_if_cancelled();
   return with_threads(context, [&] { return parse({bytes, name, &context}); });
 }
 
-std::variant<Mesh, PointCloud> read_mesh_or_points(const std::filesystem::path& path, ExecutionContext& context) {
+FileContents read_mesh_or_points(const std::filesystem::path& path, ExecutionContext& context) {
   return load(path, context);
+}
+
+std::optional<Finding> unit_remark(const Mesh& mesh, MeshFormat format) {
+  if (!mesh.unit || format == MeshFormat::threemf) return {};
+  const bool glb = format == MeshFormat::glb;
+  const bool usual =
+      *mesh.unit == LengthUnit::millimeter || (format != MeshFormat::stl && *mesh.unit == LengthUnit::meter);
+  const std::string unit(plural_of(*mesh.unit));
+  if (glb && *mesh.unit != LengthUnit::meter)
+    return make_finding(FindingCode::unit_converted, {{"name", "GLB is in meters"},
+                                                      {"from", unit},
+                                                      {"to", "meters"},
+                                                      {"factor", conversion_factor(*mesh.unit, LengthUnit::meter)}});
+  if (glb || usual) return {};
+  const char* name = format == MeshFormat::stl   ? "STL"
+                     : format == MeshFormat::obj ? "OBJ"
+                     : format == MeshFormat::ply ? "PLY"
+                                                 : "OFF";
+  return make_finding(FindingCode::unit_lost, {{"format", name}, {"unit", unit}, {"usual", "mm"}});
 }
 
 std::string serialize_mesh(const Mesh& mesh, MeshFormat format) {

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "evenmesh/error.h"
 #include "io/formats.h"
+#include "io/polygons.h"
 #include "io/text.h"
 
 namespace evenmesh {
@@ -29,6 +30,7 @@ struct Piece {
   const char* end = nullptr;
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
+  std::vector<Fan> fans;  ///< of the piece's triangles
   std::vector<std::size_t>
       relative;  ///< corners (3 · triangle + i) counted from the piece's own first vertex, modulo 2^32
   std::exception_ptr error;
@@ -82,13 +84,13 @@ class PieceReader {
         fail_at(source_, from, fmt::format("expected a coordinate of the vertex, found {}", found_at(source_, from)));
       }
     }
-    if (!is_finite(v)) fail_at(source_, p_, "a coordinate is not a finite number; remove it or export the file again");
     piece_.vertices.push_back(v);
   }
 
   void read_face() {
     std::uint32_t first = 0, previous = 0;
     bool first_relative = false, previous_relative = false;
+    const std::size_t begin = piece_.triangles.size();
     for (std::size_t count = 0; next_word(); ++count) {
       bool relative = false;
       const std::uint32_t current = read_corner(relative);
@@ -106,6 +108,7 @@ class PieceReader {
       previous = current;
       previous_relative = relative;
     }
+    if (const std::size_t made = piece_.triangles.size() - begin; made > 1) piece_.fans.push_back({begin, made});
   }
 
   /// "7", "7/1", "7//2", "7/1/2"; negative numbers count back from the last vertex before the statement.
@@ -199,14 +202,22 @@ Mesh join(const Source& source, std::vector<Piece>& pieces) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     if (!valid[i]) report_range(source, pieces[i], limits[i]);
   }
-  if (pieces.size() == 1) return {std::move(pieces[0].vertices), std::move(pieces[0].triangles)};
   Mesh mesh;
+  if (pieces.size() == 1) {
+    mesh = {std::move(pieces[0].vertices), std::move(pieces[0].triangles)};
+    mend_fans(source, pieces[0].fans, mesh);
+    return mesh;
+  }
   mesh.vertices.resize(total);
   mesh.triangles.resize(triangles.back());
   parallel_tasks(*source.context, pieces.size(), [&](std::size_t i) {
     std::copy(pieces[i].vertices.begin(), pieces[i].vertices.end(), mesh.vertices.data() + limits[i].before);
     std::copy(pieces[i].triangles.begin(), pieces[i].triangles.end(), mesh.triangles.data() + triangles[i]);
   });
+  std::vector<Fan> fans;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    for (const Fan& fan : pieces[i].fans) fans.push_back({triangles[i] + fan.first, fan.count});
+  mend_fans(source, fans, mesh);
   return mesh;
 }
 
@@ -214,7 +225,7 @@ Mesh join(const Source& source, std::vector<Piece>& pieces) {
 
 Mesh read_obj(const Source& original) {
   std::string storage;
-  const Source source{with_unix_lines(original.bytes, storage), original.name, original.context};
+  const Source source = original.with(with_unix_lines(original.bytes, storage));
   std::vector<Piece> pieces = cut(source.bytes);
   parallel_tasks(*source.context, pieces.size(), [&](std::size_t i) {
     try {
@@ -227,6 +238,30 @@ Mesh read_obj(const Source& original) {
     if (piece.error) std::rethrow_exception(piece.error);
   }
   return join(source, pieces);
+}
+
+PointCloud obj_points(const Source& original, std::vector<Vec3> vertices) {
+  std::string storage;
+  const Source source = original.with(with_unix_lines(original.bytes, storage));
+  PointCloud cloud{std::move(vertices), {}};
+  for (const char* p = source.begin(); p < source.end(); p = next_line(p, source.end())) {
+    while (p < source.end() && is_blank(*p)) ++p;
+    const char* from = p;
+    while (p < source.end() && !is_blank(*p) && *p != '\n') ++p;
+    const std::string_view word(from, static_cast<std::size_t>(p - from));
+    if (word == "f") fail_at(source, from, "holds no triangles; its faces have fewer than three corners");
+    if (word == "l" || word == "curv" || word == "surf")
+      fail_at(source, from, "holds lines or curves, but no faces; export it as a mesh, or its points as XYZ");
+    if (word != "vn") continue;
+    Vec3 n;
+    for (int a = 0; a < 3; ++a) {
+      while (p < source.end() && is_blank(*p)) ++p;
+      if (!scan_number(p, source.end(), n[a])) n = {};
+    }
+    cloud.normals.push_back(n);
+  }
+  if (cloud.normals.size() != cloud.points.size()) cloud.normals.clear();
+  return cloud;
 }
 
 std::string write_obj(const Mesh& mesh) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "io/formats.h"
+#include "io/polygons.h"
 #include "io/text.h"
 
 namespace evenmesh {
@@ -33,6 +34,9 @@ class OffReader {
     for (std::uint64_t i = 0; i < vertices; ++i) read_vertex(i);
     mesh_.triangles.reserve(faces);
     for (std::uint64_t i = 0; i < faces; ++i) read_face(i);
+    if (faces > 0 && mesh_.triangles.empty())
+      fail(source_, "holds no triangles; its faces have fewer than three corners");
+    mend_fans(source_, fans_, mesh_);
     return std::move(mesh_);
   }
 
@@ -96,7 +100,6 @@ class OffReader {
       const char* from = p_;
       if (!scan_number(p_, end_, v[a]) || !at_word_end()) wrong(from, "a coordinate of the vertex");
     }
-    if (!is_finite(v)) fail_at(source_, p_, "a coordinate is not a finite number; remove it or export the file again");
     mesh_.vertices.push_back(v);
     p_ = next_line(p_, end_);
   }
@@ -105,6 +108,7 @@ class OffReader {
     if (i % (1 << 16) == 0) source_.context->throw_if_cancelled();
     require_more("face", i);
     const std::uint64_t corners = read_count("the number of corners of the face");
+    if (corners > 3) fans_.push_back({mesh_.triangles.size(), corners - 2});
     append_fan(mesh_.triangles, corners, [&] {
       const std::int64_t index = read_integer("a vertex index");
       if (index < 0 || static_cast<std::uint64_t>(index) >= mesh_.vertices.size()) {
@@ -121,13 +125,14 @@ class OffReader {
   const char* p_;
   const char* end_;
   Mesh mesh_;
+  std::vector<Fan> fans_;
 };
 
 }  // namespace
 
 Mesh read_off(const Source& original) {
   std::string storage;
-  const Source source{with_unix_lines(original.bytes, storage), original.name, original.context};
+  const Source source = original.with(with_unix_lines(original.bytes, storage));
   return OffReader(source).read();
 }
 

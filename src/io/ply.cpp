@@ -12,6 +12,7 @@
 #include "io/binary.h"
 #include "io/formats.h"
 #include "io/ply_header.h"
+#include "io/polygons.h"
 #include "io/text.h"
 
 namespace evenmesh {
@@ -143,7 +144,7 @@ class BodyReader {
         for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) skip_row(element, 0);
       }
     }
-    require_finite(source_, mesh_.vertices);
+    mend_fans(source_, fans_, mesh_);
     return {std::move(mesh_), std::move(normals_)};
   }
 
@@ -305,6 +306,7 @@ class BodyReader {
   }
 
   void read_polygon(Type type, std::int64_t count) {
+    if (count > 3) fans_.push_back({mesh_.triangles.size(), static_cast<std::size_t>(count) - 2});
     append_fan(mesh_.triangles, static_cast<std::uint64_t>(count),
                [&] { return checked_index(values_.integer(type)); });
   }
@@ -325,6 +327,7 @@ class BodyReader {
   const Header& header_;
   Values values_;
   Mesh mesh_;
+  std::vector<Fan> fans_;
   std::vector<Vec3> normals_;
   std::uint64_t vertex_count_ = 0;
   bool vertices_known_ = false, faces_announced_ = false;

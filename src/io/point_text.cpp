@@ -37,7 +37,7 @@ struct Row {
   std::array<double, kept_columns> values{};
   std::size_t columns = 0;
   const char* wrong = nullptr;  ///< where something else than a number is
-  bool mixed = false;           ///< blanks and commas, or commas and semicolons, stand between the numbers
+  std::array<char, 2> mixed{};  ///< two that both stand between its numbers, as blanks and commas
 
   Vec3 triple(std::size_t first) const { return {values[first], values[first + 1], values[first + 2]}; }
 };
@@ -59,7 +59,8 @@ inline char skip_separator(const char*& p, const char* end) {
 
 Row scan_row(const char*& p, const char* end) {
   Row row;
-  for (char separator = '\0';;) {
+  char first = '\0', separator = '\0';  // in front of the second number, and of this one
+  while (true) {
     const char* from = p;
     double value = 0;
     const bool number = scan_number(p, end, value);
@@ -70,8 +71,9 @@ Row scan_row(const char*& p, const char* end) {
     }
     if (row.columns < kept_columns) row.values[row.columns] = value;
     ++row.columns;
+    if (first == '\0') first = separator;
+    if (separator != first) row.mixed = {first, separator};
     if (next == '\n') return row;
-    row.mixed = row.mixed || (separator != '\0' && separator != next);
     separator = next;
   }
 }
@@ -99,10 +101,16 @@ struct Piece {
   std::exception_ptr error;
 };
 
+const char* name_of_separator(char c) {
+  return c == ',' ? "commas" : c == ';' ? "semicolons" : "blanks";
+}
+
 void require_numbers(const Source& source, const Row& row, const char* begin) {
-  if (row.mixed) {
+  if (const auto [first, second] = row.mixed; first != second) {
     fail_at(source, begin,
-            "blanks and commas both stand between its numbers; use one of them, and points in decimal numbers");
+            fmt::format("its numbers stand apart by {} and by {}; use one of them, and write decimal numbers with a "
+                        "point (1.5, not 1,5)",
+                        name_of_separator(first), name_of_separator(second)));
   }
   if (row.wrong) {
     fail_at(source, row.wrong,
@@ -111,9 +119,49 @@ void require_numbers(const Source& source, const Row& row, const char* begin) {
   }
 }
 
+/// How sure one must be that a line holds the titles of columns.
+enum class Titles { surely, likely };
+
+/// Whether a line begins with a word, and the next row with three numbers; surely, if there are as many of each.
+bool is_title(const char* p, const char* end, Titles how) {
+  const char* next = next_line(p, end);
+  std::string_view line(p, static_cast<std::size_t>(next - p));
+  line = line.substr(0, line.find_last_not_of(" \t\r\n") + 1);
+  const char* q = p;
+  double number = 0;
+  if (line.empty() || scan_number(q, end, number)) return false;
+  const char* rows = skip_to_row(next, end);
+  const Row row = rows == end ? Row{} : scan_row(rows, end);
+  if (row.columns < 3 || how == Titles::likely) return row.columns >= 3;
+  if (row.wrong) return false;
+  std::size_t words = 1;
+  const char separator = line.find(';') != line.npos ? ';' : line.find(',') != line.npos ? ',' : ' ';
+  for (std::size_t i = 1; i < line.size(); ++i)
+    words += separator == ' ' ? !is_blank(line[i]) && is_blank(line[i - 1]) : line[i] == separator;
+  return words == row.columns;
+}
+
+/// Moves behind a line of titles; false if there is none.
+bool skip_title(const char*& p, const char* end, Titles how) {
+  if (p == end || !is_title(p, end, how)) return false;
+  p = skip_to_row(next_line(p, end), end);
+  return true;
+}
+
+void remark_title(const Source& source, const char* at) {
+  const char* end = next_line(at, source.end());
+  while (end > at && (is_blank(end[-1]) || end[-1] == '\n')) --end;
+  remark(source, make_finding(FindingCode::line_skipped,
+                              {{"name", std::string(source.name)},
+                               {"line", static_cast<double>(1 + std::count(source.begin(), at, '\n'))},
+                               {"text", quoted({at, static_cast<std::size_t>(end - at)})}}));
+}
+
 Layout find_layout(const Source& source) {
   Layout layout;
   layout.begin = skip_to_row(source.begin(), source.end());
+  if (const char* title = layout.begin; skip_title(layout.begin, source.end(), Titles::likely))
+    remark_title(source, title);
   layout.count = count_of(layout.begin, source.end());
   if (layout.count) layout.begin = skip_to_row(next_line(layout.begin, source.end()), source.end());
   if (layout.begin == source.end()) fail(source, "holds no points; export the file again");
@@ -144,17 +192,13 @@ void read_piece(const Source& source, const Layout& layout, Piece& piece) {
   for (const char* p = skip_to_row(piece.begin, piece.end); p < piece.end; p = skip_to_row(p, piece.end)) {
     const char* begin = p;
     const Row row = scan_row(p, piece.end);
-    if (row.wrong || row.mixed) require_numbers(source, row, begin);
+    if (row.wrong || row.mixed[0] != row.mixed[1]) require_numbers(source, row, begin);
     if (row.columns != layout.columns) {
       fail_at(source, begin,
               fmt::format("has {} columns, but the first point has {}; {}", row.columns, layout.columns,
                           p == source.end() ? "the file is truncated" : "correct it or export the file again"));
     }
-    const Vec3 point = row.triple(0);
-    if (!is_finite(point)) {
-      fail_at(source, begin, "a coordinate is not a finite number; remove the point or export the file again");
-    }
-    piece.points.push_back(point);
+    piece.points.push_back(row.triple(0));
     if (layout.columns >= 6) piece.triples[0].push_back(row.triple(3));
     if (layout.columns >= 9) piece.triples[1].push_back(row.triple(6));
     p = next_line(p, piece.end);  // a comment may end the row
@@ -234,13 +278,15 @@ void settle_count(const Source& source, const Layout& layout, PointCloud& cloud)
 bool is_point_name(std::string_view name) {
   if (name.size() < 4) return false;
   const std::string_view ending = name.substr(name.size() - 4);
-  return equals_ignoring_case(ending, ".xyz") || equals_ignoring_case(ending, ".pts") || is_pwn(name);
+  return equals_ignoring_case(ending, ".xyz") || equals_ignoring_case(ending, ".pts") ||
+         equals_ignoring_case(ending, ".csv") || is_pwn(name);
 }
 
 bool is_point_text(std::string_view bytes) {
   bytes = bytes.substr(0, 1 << 16);
   const char* end = bytes.data() + bytes.size();
   const char* p = skip_to_row(bytes.data(), end);
+  skip_title(p, end, Titles::surely);
   if (count_of(p, end)) p = skip_to_row(next_line(p, end), end);
   if (p == end) return false;
   const Row row = scan_row(p, end);
@@ -249,7 +295,7 @@ bool is_point_text(std::string_view bytes) {
 
 PointCloud read_point_text(const Source& original) {
   std::string storage;
-  const Source source{with_unix_lines(original.bytes, storage), original.name, original.context};
+  const Source source = original.with(with_unix_lines(original.bytes, storage));
   const Layout layout = find_layout(source);
   std::vector<Piece> pieces = cut(layout, source.end());
   parallel_tasks(*source.context, pieces.size(), [&](std::size_t i) {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "core/parallel.h"
 #include "evenmesh/error.h"
@@ -35,28 +36,73 @@ std::string found_at(const Source& source, const char* where) {
   return quoted({where, static_cast<std::size_t>(std::find_if(where, source.end(), blank) - where)});
 }
 
-void require_finite(const Source& source, const std::vector<Vec3>& vertices) {
-  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-  std::atomic<std::size_t> first{none};
+void remark(const Source& source, Finding finding) {
+  if (source.findings) source.findings->push_back(std::move(finding));
+}
+
+namespace {
+
+bool all_finite(const Source& source, const std::vector<Vec3>& vertices) {
+  std::atomic<bool> finite{true};
   parallel_for(*source.context, vertices.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
     double sum = 0;  // x − x is 0 for finite x and NaN otherwise: one test per piece
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& v = vertices[i];
       sum += (v.x - v.x) + (v.y - v.y) + (v.z - v.z);
     }
-    if (sum == 0) return;
-    std::size_t i = begin;
-    while (is_finite(vertices[i])) ++i;
-    std::size_t known = first.load();
-    while (i < known && !first.compare_exchange_weak(known, i)) {
-    }
+    if (sum != 0) finite = false;
   });
-  if (first != none) {
-    fail(source,
-         fmt::format("vertex {} (counted from 0) has a coordinate that is not a finite number; remove it or export "
-                     "the file again",
-                     first.load()));
+  return finite;
+}
+
+}  // namespace
+
+void leave_out_infinite(const Source& source, Mesh& mesh) {
+  if (all_finite(source, mesh.vertices)) return;
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> number(mesh.vertices.size(), none);
+  std::uint32_t kept = 0;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (!is_finite(mesh.vertices[v])) continue;
+    mesh.vertices[kept] = mesh.vertices[v];
+    number[v] = kept++;
   }
+  const std::size_t vertices = mesh.vertices.size() - kept, triangles = mesh.triangles.size();
+  mesh.vertices.resize(kept);
+  for (Triangle& t : mesh.triangles)
+    for (std::uint32_t& v : t) v = number[v];
+  std::erase_if(mesh.triangles, [](const Triangle& t) { return std::find(t.begin(), t.end(), none) != t.end(); });
+  remark_infinite(source, vertices, "vertex", triangles - mesh.triangles.size());
+}
+
+void leave_out_infinite(const Source& source, PointCloud& cloud) {
+  if (all_finite(source, cloud.points)) return;
+  const std::size_t given = cloud.points.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < given; ++i) {
+    if (!is_finite(cloud.points[i])) continue;
+    cloud.points[kept] = cloud.points[i];
+    if (!cloud.normals.empty()) cloud.normals[kept] = cloud.normals[i];
+    ++kept;
+  }
+  cloud.points.resize(kept);
+  if (!cloud.normals.empty()) cloud.normals.resize(kept);
+  remark_infinite(source, given - kept, "point");
+}
+
+void remark_infinite(const Source& source, std::size_t count, std::string_view what, std::size_t triangles) {
+  if (count == 0) return;
+  std::string words(what);
+  if (count > 1) words = what == "vertex" ? "vertices" : words + "s";
+  remark(source, make_finding(FindingCode::vertices_not_finite,
+                              {{"name", std::string(source.name)},
+                               {"count", static_cast<double>(count)},
+                               {"what", std::move(words)},
+                               {"were", count > 1 ? "were" : "was"},
+                               {"triangles", static_cast<double>(triangles)},
+                               {"also", triangles == 0   ? ""
+                                        : triangles == 1 ? ", with the triangle at it"
+                                                         : fmt::format(", with {} triangles", triangles)}}));
 }
 
 std::string_view with_unix_lines(std::string_view bytes, std::string& storage) {

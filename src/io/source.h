@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "evenmesh/execution_context.h"
+#include "evenmesh/findings.h"
 #include "evenmesh/mesh.h"
+#include "evenmesh/points.h"
 
 namespace evenmesh {
 
@@ -20,7 +22,10 @@ struct Source {
   std::string_view bytes;
   std::string_view name;
   ExecutionContext* context = nullptr;
+  std::vector<Finding>* findings = nullptr;  ///< what there is to say of it; nullptr: nobody listens
 
+  /// The same file, its bytes read otherwise.
+  Source with(std::string_view other) const { return {other, name, context, findings}; }
   const char* begin() const { return bytes.data(); }
   const char* end() const { return bytes.data() + bytes.size(); }
 };
@@ -34,8 +39,14 @@ std::string found_at(const Source& source, const char* where);
 /// `text` in quotes, shortened and printable.
 std::string quoted(std::string_view text);
 
-/// Refuses vertices that are not finite. Vertices are counted from 0 in the message.
-void require_finite(const Source& source, const std::vector<Vec3>& vertices);
+/// Adds to the source's findings.
+void remark(const Source& source, Finding finding);
+
+/// Leaves out vertices that are not finite, and the triangles at them, or points; a finding tells how many.
+void leave_out_infinite(const Source& source, Mesh& mesh);
+void leave_out_infinite(const Source& source, PointCloud& cloud);
+/// The finding of that. @param what  "vertex", "point", "triangle"
+void remark_infinite(const Source& source, std::size_t count, std::string_view what, std::size_t triangles = 0);
 
 /// Text files of old Macs end lines with \r alone; gives them \n. Otherwise returns `bytes` itself.
 std::string_view with_unix_lines(std::string_view bytes, std::string& storage);
@@ -59,7 +70,8 @@ class InstanceBudget {
   std::uint64_t left_;
 };
 
-/// Appends a polygon as a fan around its first corner; next() gives corner after corner, `count` times.
+/// Appends a polygon as a fan around its first corner; next() gives corner after corner, `count` times. Polygons of
+/// more than three are to be looked at again when all vertices are known (polygons.h).
 template <typename Next>
 void append_fan(std::vector<Triangle>& triangles, std::uint64_t count, const Next& next) {
   if (count == 0) return;

@@ -64,7 +64,6 @@ class AsciiReader {
         fail_at(source_, from, fmt::format("expected a coordinate of the vertex, found {}", found_at(source_, from)));
       }
     }
-    if (!is_finite(v)) fail_at(source_, p_, "a coordinate is not a finite number; remove it or export the file again");
     return v;
   }
 
@@ -136,7 +135,7 @@ bool is_ascii_stl(std::string_view bytes) {
 Mesh read_stl(const Source& original) {
   if (is_exact_binary_stl(original.bytes) || !is_ascii_stl(original.bytes)) return read_binary(original);
   std::string storage;
-  const Source source{with_unix_lines(original.bytes, storage), original.name, original.context};
+  const Source source = original.with(with_unix_lines(original.bytes, storage));
   return AsciiReader(source).read();
 }
 

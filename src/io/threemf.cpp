@@ -1,6 +1,6 @@
-/// 3MF (3D Manufacturing Format, core specification 1.3): the build items with their components, placed. Units,
-/// materials and slices are passed over. Of the production extension, components in other parts of the package are
-/// followed.
+/// 3MF (3D Manufacturing Format, core specification 1.3): the build items with their components, placed, in their unit.
+/// Materials and slices are passed over, supports left out. Of the production extension, components in other parts of
+/// the package are followed.
 ///
 /// The reader is small and its own because lib3mf 1.8 was seen to leak memory on damaged packages.
 
@@ -27,6 +27,7 @@ struct Reference {
 };
 
 struct Object {
+  std::string type;  ///< "model" where none is given
   Mesh mesh;
   std::vector<Reference> components;
 };
@@ -34,7 +35,13 @@ struct Object {
 struct Model {
   std::map<std::uint64_t, Object> objects;
   std::vector<Reference> items;
+  LengthUnit unit = LengthUnit::millimeter;
 };
+
+/// What is printed to hold the model up, and broken off again.
+bool is_support(const Object& object) {
+  return object.type == "support" || object.type == "solidsupport";
+}
 
 // ---- One model part -------------------------------------------------------------------------------------------------
 
@@ -55,12 +62,16 @@ class ModelParser {
 
  private:
   void open(const XmlTags::Tag& tag) {
-    if (tag.name == "model") model_seen_ = true;
+    if (tag.name == "model") {
+      model_seen_ = true;
+      model_.unit = unit_of(tag);
+    }
     if (tag.name == "mesh" && object_) in_mesh_ = true;
     if (in_mesh_ && tag.name == "vertex") return read_vertex(tag);
     if (in_mesh_ && tag.name == "triangle") return read_triangle(tag);
     if (tag.name == "object") {
       object_ = &model_.objects[number(tag, "id")];
+      object_->type = tag.attribute("type").value_or("model");
     } else if (tag.name == "component" && object_) {
       object_->components.push_back(reference(tag));
     } else if (tag.name == "item") {
@@ -82,7 +93,7 @@ class ModelParser {
       if (key.size() != 1 || key[0] < 'x' || key[0] > 'z') return;
       const char* p = value.data();
       double& coordinate = v[key[0] - 'x'];
-      if (!scan_number(p, value.data() + value.size(), coordinate) || !std::isfinite(coordinate)) {
+      if (!scan_number(p, value.data() + value.size(), coordinate)) {
         fail_at(source_, value.data(), fmt::format("{} is no coordinate", quoted(value)));
       }
       seen |= 1 << (key[0] - 'x');
@@ -111,6 +122,14 @@ class ModelParser {
     });
     if (seen != 7) fail_at(source_, tag.name.data(), "a triangle lacks v1, v2 or v3");
     object_->mesh.triangles.push_back(t);
+  }
+
+  LengthUnit unit_of(const XmlTags::Tag& tag) const {
+    const std::string_view word = tag.attribute("unit").value_or("millimeter");
+    const std::optional<LengthUnit> unit = unit_of_name(word);
+    if (!unit || word != word_of(*unit))
+      fail_at(source_, word.data(), fmt::format("{} is no unit of a 3MF file; write millimeter there", quoted(word)));
+    return *unit;
   }
 
   std::uint64_t number(const XmlTags::Tag& tag, std::string_view key) const {
@@ -163,9 +182,10 @@ class PackageReader {
     const Model& start = model(path);
     for (const Reference& item : start.items) place(item, path, {}, 0);
     if (start.items.empty()) {
-      for (const auto& [id, object] : start.objects) append(object.mesh, {});
+      for (const auto& [id, object] : start.objects) append(object, {});
     }
-    require_finite(source_, mesh_.vertices);  // transforms may overflow
+    remark_supports();
+    mesh_.unit = start.unit;
     return std::move(mesh_);
   }
 
@@ -174,7 +194,7 @@ class PackageReader {
   std::string start_path() {
     if (const auto* rels = archive_.find("_rels/.rels")) {
       const std::string text = archive_.extract(*rels);
-      const Source part{text, source_.name, source_.context};
+      const Source part = source_.with(text);
       XmlTags tags(part);
       while (const auto tag = tags.next()) {
         if (tag->name != "Relationship" || !tag->attribute("Type").value_or("").ends_with("/3dmodel")) continue;
@@ -199,9 +219,31 @@ class PackageReader {
     return models_.emplace(path, ModelParser({text, name, source_.context}).parse()).first->second;
   }
 
-  void append(const Mesh& part, const PartPlacement& placement) {
+  void append(const Object& object, const PartPlacement& placement) {
+    if (is_support(object)) {
+      ++supports_;
+      support_type_ = object.type;
+      return;
+    }
+    const Mesh& part = object.mesh;
     budget_.spend(part.vertices.size() + part.triangles.size());
     append_placed(source_, part, placement, mesh_);
+  }
+
+  void remark_supports() const {
+    if (supports_ == 0) return;
+    if (mesh_.triangles.empty())
+      fail(source_,
+           fmt::format("holds nothing but objects of type '{}', which are no part of a model; make them of type "
+                       "'model'",
+                       support_type_));
+    const bool one = supports_ == 1;
+    remark(source_, make_finding(FindingCode::objects_left_out, {{"name", std::string(source_.name)},
+                                                                 {"count", static_cast<double>(supports_)},
+                                                                 {"what", one ? "object" : "objects"},
+                                                                 {"type", support_type_},
+                                                                 {"were", one ? "was" : "were"},
+                                                                 {"them", one ? "it" : "them"}}));
   }
 
   void place(const Reference& reference, const std::string& here, const PartPlacement& outer, int depth) {
@@ -215,7 +257,8 @@ class PackageReader {
       fail(source_, fmt::format("refers to object {}, which it does not hold", reference.object));
     }
     const PartPlacement placement = outer * reference.placement;
-    append(object->second.mesh, placement);
+    append(object->second, placement);
+    if (is_support(object->second)) return;
     for (const Reference& component : object->second.components) place(component, path, placement, depth + 1);
   }
 
@@ -224,6 +267,8 @@ class PackageReader {
   InstanceBudget budget_;
   std::map<std::string, Model> models_;
   Mesh mesh_;
+  std::size_t supports_ = 0;
+  std::string support_type_;
 };
 
 }  // namespace
@@ -241,10 +286,10 @@ std::string write_threemf(const Mesh& mesh) {
       R"(<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
 )";
-  std::string model =
-      R"(<?xml version="1.0" encoding="UTF-8"?>
-<model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1" type="model"><mesh><vertices>
-)";
+  std::string model = fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
+<model unit="{}" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1" type="model"><mesh><vertices>
+)",
+                                  word_of(mesh.unit.value_or(LengthUnit::millimeter)));
   model.reserve(model.size() + 60 * mesh.vertices.size() + 50 * mesh.triangles.size() + 200);
   for (const Vec3& v : mesh.vertices) {
     append_number(model += "<vertex x=\"", static_cast<float>(v.x));

@@ -1,8 +1,6 @@
 #pragma once
 /// One vertex for all corners with equal coordinates.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -69,11 +67,12 @@ class Welder {
 };
 
 /// Mesh of `triangles` loose triangles; corner(i) gives corner i % 3 of triangle i / 3, in any order.
-/// Refuses coordinates that are not finite.
+/// Triangles with a coordinate that is not finite are left out; a finding tells how many.
 /// Cost: O(triangles); hashes are computed a batch ahead, so that the table's cache misses overlap.
 template <typename Corner>
 Mesh weld(const Source& source, std::size_t triangles, const Corner& corner) {
   constexpr std::size_t batch = 16;
+  static constexpr std::uint32_t left_out = 0xffffffff;
   Welder welder(triangles / 2 + 4);  // Euler: a closed surface has half as many vertices as triangles
   Mesh mesh;
   mesh.triangles.resize(triangles);
@@ -85,20 +84,18 @@ Mesh weld(const Source& source, std::size_t triangles, const Corner& corner) {
     const std::size_t corners = 3 * std::min(batch, triangles - first);
     for (std::size_t i = 0; i < corners; ++i) {
       points[i] = Welder::canonical(corner(3 * first + i));
-      if (!is_finite(points[i])) {  // before hashing: NaN equals nothing, so that all would pile up in one place
-        fail(source,
-             fmt::format("triangle {} (counted from 0) has a coordinate that is not a finite number; remove it or "
-                         "export the file again",
-                         first + i / 3));
-      }
       hashes[i] = Welder::hash(points[i]);
       welder.prefetch(hashes[i]);
     }
     for (std::size_t i = 0; i < corners; ++i) {
-      mesh.triangles[first + i / 3][i % 3] = welder.insert(points[i], hashes[i]);
+      // NaN equals nothing, so that all would pile up in one place.
+      mesh.triangles[first + i / 3][i % 3] = is_finite(points[i]) ? welder.insert(points[i], hashes[i]) : left_out;
     }
   }
   mesh.vertices = welder.take();
+  const std::size_t infinite = std::erase_if(
+      mesh.triangles, [](const Triangle& t) { return std::find(t.begin(), t.end(), left_out) != t.end(); });
+  remark_infinite(source, infinite, "triangle");
   return mesh;
 }
 

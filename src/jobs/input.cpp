@@ -12,6 +12,7 @@
 #include "evenmesh/io.h"
 #include "evenmesh/raster.h"
 #include "evenmesh/scene.h"
+#include "evenmesh/solid.h"
 
 namespace evenmesh {
 namespace {
@@ -62,9 +63,12 @@ GlslOptions shader_options(const InputOptions& options) {
           .device = options.device};
 }
 
-Shape shape_of(std::variant<Mesh, PointCloud> contents, const std::string& title) {
-  if (auto* points = std::get_if<PointCloud>(&contents)) return shape_from_points(std::move(*points), title);
-  return shape_from_mesh(std::get<Mesh>(std::move(contents)), title);
+Shape shape_of(FileContents contents, const std::string& title) {
+  auto* points = std::get_if<PointCloud>(&contents.what);
+  Shape shape = points ? shape_from_points(std::move(*points), title)
+                       : shape_from_mesh(std::get<Mesh>(std::move(contents.what)), title);
+  shape.findings = std::move(contents.findings);
+  return shape;
 }
 
 [[noreturn]] void refuse_volume(const std::string& name) {
@@ -128,6 +132,17 @@ Shape read_shape(const std::string& name, const InputOptions& options, Execution
       break;
   }
   return shape_of(read_mesh_or_points(name, context), name);
+}
+
+std::vector<Shape> in_one_unit(std::vector<Shape> shapes, std::optional<LengthUnit> wanted) {
+  for (const Shape& shape : shapes)
+    if (!wanted) wanted = shape.unit;
+  if (!wanted) return shapes;
+  for (Shape& shape : shapes) {
+    if (shape.unit.value_or(*wanted) != *wanted) shape = converted(shape, *wanted);
+    shape.unit = wanted;
+  }
+  return shapes;
 }
 
 Shape read_drawing(Drawing drawing, const InputOptions& options) {

@@ -44,7 +44,10 @@ Repaired repair(const Shape& shape, Hull asked, const MeshOptions& options, Exec
 
 Repaired repaired(const Shape& shape, Hull hull, const MeshOptions& options, ExecutionContext& context) {
   if (!shape.mesh()) throw InvalidInput("repair takes a triangle mesh; other inputs have nothing to repair: use mesh");
-  return with_threads(context, [&] { return repair(shape, hull, options, context); });
+  Repaired r = with_threads(context, [&] { return repair(shape, hull, options, context); });
+  r.shape.unit = shape.unit;
+  r.shape.findings = shape.findings;
+  return r;
 }
 
 std::string summary_of(const MeshDefects& d) {

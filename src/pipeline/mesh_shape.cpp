@@ -51,7 +51,14 @@ MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& op
 MeshResult mesh_with(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
                      Artifacts& kept) {
   check(options);
-  return with_threads(context, [&] { return run(kernels, shape, options, context, kept); });
+  MeshResult result = with_threads(context, [&] {
+    if (options.method != Method::raster) require_insides(shape, context);
+    return run(kernels, shape, options, context, kept);
+  });
+  result.mesh.unit = shape.unit;
+  std::vector<Finding>& findings = result.report.findings;
+  findings.insert(findings.begin(), shape.findings.begin(), shape.findings.end());
+  return result;
 }
 
 MeshResult mesh_shape(const Shape& shape, const MeshOptions& options, ExecutionContext& context, Artifacts* kept) {

@@ -32,7 +32,9 @@ class Refinement {
           if (!draft_.constraints.vertex(static_cast<std::uint32_t>(v)))
             vertices[v] = projector_->project(vertices[v], 0.5 * draft_.sizing.edge(vertices[v]));
       });
-    for (const auto& [v, place] : draft_.boundary) vertices[v] = place;
+    // The shell's rim lies about a voxel beyond that of the sheet.
+    const double reach = sampler_.input_mesh() && projector_ ? 3 * cells_.sampling.samples.grid.spacing : 0;
+    for (const auto& [v, place] : draft_.boundary) vertices[v] = reach > 0 ? projector_->project(place, reach) : place;
   }
 
   Refined improve() {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/platform.h"
+#include "pipeline/coarseness.h"
 
 namespace evenmesh {
 namespace {
@@ -52,18 +53,23 @@ void add_tessellation(const Tessellation& cells, Report& report, ExecutionContex
   report.cycle_shares = cycle_shares(cells.complex.edges_by_cycle, context);
 }
 
+constexpr double notable_share = 0.25;  ///< of edges that are longer than the radius of curvature
+
 /// What the run has to say of its result, in the order of the stages.
 class Judge {
  public:
   Judge(const Draft& draft, const Tessellation& cells, const MeshOptions& options, const Report& report)
       : draft_(draft), cells_(cells), options_(options), report_(report), quality_(report.quality) {}
 
-  std::vector<Finding> findings() {
+  std::vector<Finding> findings(const Coarseness& coarse) {
     findings_ = cells_.sampling.findings;
     if (report_.dropped_components > 0)
       say(FindingCode::small_components_dropped, {{"count", number(report_.dropped_components)}});
     judge_topology();
     judge_triangles();
+    if (coarse.share > notable_share)
+      say(FindingCode::coarser_than_curvature,
+          {{"percent", 100 * coarse.share}, {"vertices", rounded(coarse.factor * number(quality_.vertices))}});
     const double made = number(quality_.vertices);
     if (std::abs(made - asked()) > 0.005 * asked())
       say(FindingCode::vertex_count, {{"vertices", made},
@@ -75,6 +81,11 @@ class Judge {
  private:
   double asked() const { return number(report_.seeds_asked); }
   static double number(std::size_t n) { return static_cast<double>(n); }
+  /// To two digits.
+  static double rounded(double n) {
+    const double digit = std::pow(10.0, std::floor(std::log10(n)) - 1);
+    return std::ceil(n / digit) * digit;
+  }
   void say(FindingCode code, std::vector<std::pair<std::string, FindingValue>> values = {}) {
     findings_.push_back(make_finding(code, std::move(values)));
   }
@@ -132,7 +143,9 @@ MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cell
   timer.stage("measure", 0.05, [&] { report.quality = measure_quality(result.mesh, context); });
   report.seeds = report.quality.vertices;
   report.alpha = static_cast<double>(report.samples) / static_cast<double>(std::max<std::size_t>(1, report.seeds));
-  report.findings = Judge(draft, cells, options, report).findings();
+  const Coarseness coarse =
+      timer.stage("measure", 0, [&] { return coarseness(result.mesh, draft.constraints, context); });
+  report.findings = Judge(draft, cells, options, report).findings(coarse);
   report.seconds = timer.seconds();
   report.peak_memory_bytes = peak_memory_bytes();
   context.report("done", 1);

@@ -103,13 +103,20 @@ class BandSampling {
     return plan;
   }
 
+  std::string nothing_seen() const {
+    if (!sampler_.point_spacing()) return "nothing of the surface lies within the bounds";
+    return sampler_.name() +
+           ": the points show no surface: too few lie around each of them to tell a plane there; take more points, or "
+           "bridge wider gaps with --thickness (up to 20)";
+  }
+
   /// Returns the samples that an even mesh would need to have the same for its cells as the smallest have.
   double once(const Plan& plan) {
     result_ = {};  // frees the memory first
     narrowest_.reset();
     result_.plan = plan;
     const SiteVoxels sites = timer_.stage("voxelize", 0.05, [&] { return sampler_.voxelize(plan.grid, context_); });
-    if (sites.size() == 0) throw UnusableInput("nothing of the surface lies within the bounds");
+    if (sites.size() == 0) throw UnusableInput(nothing_seen());
     result_.sites = sites.size();
     if (plan.route == Route::sheets)
       sample_sheets(sites);
@@ -195,6 +202,7 @@ class BandSampling {
   }
 
   void say_what_sheets_lost() {
+    add_one_sided(sampler_, result_, context_);
     if (narrowest_ && !sampler_.point_spacing()) say_merges();
     if (const std::size_t cut = result_.sheet->sheets.cut; cut > 0)
       say(FindingCode::sheets_cut, {{"count", static_cast<double>(cut)}});

@@ -4,6 +4,7 @@
 #include "evenmesh/error.h"
 #include "grid/density.h"
 #include "grid/surface_components.h"
+#include "pipeline/lost_pieces.h"
 #include "pipeline/sampling.h"
 
 namespace evenmesh {
@@ -30,6 +31,7 @@ class SolidSampling {
     if (result_.plan.refinable && (surprise > 2 || surprise < 0.6)) sample_again();
     weigh();
     if (result_.plan.small_components > 0 || surprise > 2) drop_small();
+    add_lost_pieces();
     return std::move(result_);
   }
 
@@ -82,6 +84,17 @@ class SolidSampling {
       throw UnusableInput("the surface consists of specks smaller than a cell: ask for more vertices");
   }
 
+  /// Those that no ray hits go without being dropped.
+  void add_lost_pieces() {
+    const Mesh* mesh = sampler_.input_mesh();
+    if (mesh == nullptr) return;
+    const std::size_t lost = timer_.stage("sample", 0, [&] {
+      return count_lost_pieces(*mesh, sampler_.bounds(), result_.samples,
+                               result_.samples.total_area / static_cast<double>(result_.plan.vertices));
+    });
+    result_.dropped_components = std::max(result_.dropped_components, lost);
+  }
+
   const Sampler& sampler_;
   const MeshOptions& options_;
   StageTimer& timer_;
@@ -89,11 +102,12 @@ class SolidSampling {
   Sampling result_;
 };
 
-void add_findings(const Sampler& sampler, Sampling& sampling) {
+void add_findings(const Sampler& sampler, Sampling& sampling, const ExecutionContext& context) {
   const SampleSet& samples = sampling.samples;
   const auto say = [&](FindingCode code, std::vector<std::pair<std::string, FindingValue>> values = {}) {
     sampling.findings.push_back(make_finding(code, std::move(values)));
   };
+  add_one_sided(sampler, sampling, context);
   if (samples.disagreements > 0)
     say(FindingCode::inside_by_vote, {{"count", static_cast<double>(samples.disagreements)}});
   if (const std::size_t non_finite = sampler.non_finite(); non_finite > 0)
@@ -112,7 +126,7 @@ void add_findings(const Sampler& sampler, Sampling& sampling) {
 Sampling sample_solid(const Sampler& sampler, Plan plan, const MeshOptions& options, StageTimer& timer,
                       ExecutionContext& context) {
   Sampling sampling = SolidSampling(sampler, std::move(plan), options, timer, context).result();
-  add_findings(sampler, sampling);
+  add_findings(sampler, sampling, context);
   return sampling;
 }
 

@@ -38,6 +38,9 @@ class Sampler {
   /// Closing the solid where the bounds cut it is part of the shape's definition.
   bool capped_by_bounds() const { return shape_.capped_by_bounds; }
 
+  /// The input where it is a triangle mesh, else nullptr.
+  const Mesh* input_mesh() const { return shape_.mesh(); }
+
   /// Whether rays can tell inside from outside at all: not for points.
   virtual bool has_inside() const { return true; }
   /// How far there is an inside to speak of, [0, 1]: 1 for solids.
@@ -71,6 +74,10 @@ class Sampler {
   Kernels kernels_;
   NonFiniteValues non_finite_;
 };
+
+/// Refuses solids made of sheets: booleans and offsets need an inside of every triangle mesh among their operands.
+/// @throws UnusableInput  solidity below min_solidity: which one, and what to do
+void require_insides(const Shape& shape, ExecutionContext& context);
 
 /// The only place that asks what kind a shape is. Finds bounds where there are none, and cuts the shape by those given.
 /// @throws UnusableInput  nothing bounds it, or its longest side is not between 1e-8 and 1e10

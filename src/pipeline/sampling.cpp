@@ -1,5 +1,6 @@
 #include "pipeline/sampling.h"
 
+#include "geometry/sidedness.h"
 #include "grid/density.h"
 #include "sample/dexels.h"
 
@@ -13,6 +14,17 @@ double apply_density(Sampling& sampling, const Density& density, ExecutionContex
   sampling.samples = std::move(weighted.samples);
   sampling.sizing = SizingField(0, density, weighted.mean_density);
   return weighted.max_density / weighted.mean_density;
+}
+
+void add_one_sided(const Sampler& sampler, Sampling& sampling, const ExecutionContext& context) {
+  const Mesh* mesh = sampler.input_mesh();
+  const std::size_t triangles = mesh ? one_sided_triangles(*mesh, context) : 0;
+  if (triangles == 0) return;
+  const char* solid = "the mesh bounds what rays found enclosed; --method shell follows the surface";
+  const char* sheets = "the mesh is cut or leaves parts out where its sides would meet";
+  sampling.findings.push_back(make_finding(
+      FindingCode::one_sided,
+      {{"count", static_cast<double>(triangles)}, {"what", sampling.plan.route == Route::solid ? solid : sheets}}));
 }
 
 Sampling sample(const Sampler& sampler, Plan plan, const MeshOptions& options, StageTimer& timer,

@@ -55,6 +55,9 @@ Sampling sample_solid(const Sampler& sampler, Plan plan, const MeshOptions& opti
 Sampling sample_band(const Sampler& sampler, Plan plan, const MeshOptions& options, StageTimer& timer,
                      ExecutionContext& context, Artifacts& kept);
 
+/// Says of a mesh with one side only that the result cannot follow it.
+void add_one_sided(const Sampler& sampler, Sampling& sampling, const ExecutionContext& context);
+
 /// How many more samples the smallest cells need than the mean ones; weighs the samples, and sets the sizing.
 double apply_density(Sampling& sampling, const Density& density, ExecutionContext& context);
 

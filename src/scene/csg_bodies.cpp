@@ -231,6 +231,17 @@ std::optional<Revolution> CsgBodies::revolution(const CsgNode& node, double reac
   return how;
 }
 
+FlatOffset CsgBodies::flat_offset(const CsgNode& node) const {
+  const bool straight = csg_argument(node, "delta", 99) != nullptr;
+  FlatOffset how{.distance = straight ? number(node, "delta", 99, 0) : number(node, "r", 0, 1)};
+  if (straight) {
+    how.join = csg_flag(node, "chamfer", 99) ? FlatJoin::chamfer : FlatJoin::miter;
+  } else if (how.distance != 0) {
+    how.fragments = fragments(node, std::abs(how.distance));
+  }
+  return how;
+}
+
 Affine CsgBodies::matrix(const CsgNode& node) const {
   const CsgValue* rows = csg_argument(node, "m", 0);
   if (rows == nullptr || rows->kind != CsgValue::Kind::list || rows->list.size() < 3 || rows->list.size() > 4) {

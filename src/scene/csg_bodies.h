@@ -6,6 +6,7 @@
 #include "evenmesh/mesh.h"
 #include "scene/bodies.h"
 #include "scene/csg_tree.h"
+#include "scene/flat_offset.h"
 #include "scene/scene_loader.h"
 
 namespace evenmesh {
@@ -25,6 +26,7 @@ class CsgBodies {
   std::optional<LinearExtrusion> linear_extrusion(const CsgNode& node, const Outline& outline) const;
   /// @param reach  largest distance of the outline from the axis
   std::optional<Revolution> revolution(const CsgNode& node, double reach) const;
+  FlatOffset flat_offset(const CsgNode& node) const;
   Affine matrix(const CsgNode& node) const;
 
   Mesh pulled(const CsgNode& node, const Outline& outline, const LinearExtrusion& how) const;

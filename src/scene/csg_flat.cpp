@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/convex_hull.h"
+
 namespace evenmesh {
 namespace {
 
@@ -33,6 +35,9 @@ Outline CsgFlat::node(const CsgNode& n, const std::optional<Affine>& motion) con
   if (n.name == "difference") return difference(n, motion);
   if (n.name == "intersection") return intersection(n, motion);
   if (n.name == "multmatrix") return multiplied(n, motion);
+  if (n.name == "hull") return hull(n, motion);
+  if (n.name == "offset") return offset(n, motion);
+  if (n.name == "import") refuse_drawing(source_, n);
   if (CsgBodies::is_flat(n.name)) {
     Outline outline = bodies_.flat(n).value_or(Outline{});
     return motion ? moved(std::move(outline), *motion) : outline;
@@ -82,6 +87,24 @@ Outline CsgFlat::intersection(const CsgNode& n, const std::optional<Affine>& mot
   if (nothing || parts.empty()) return {};
   if (parts.size() == 1) return std::move(parts.front());
   return in_csg(source_, n, [&] { return combined(FlatSet::intersect, parts); });
+}
+
+Outline CsgFlat::hull(const CsgNode& n, const std::optional<Affine>& motion) const {
+  std::vector<Point2> points;
+  for (const CsgNode& child : n.children) {
+    if (child.left_out) continue;
+    for (const Contour& contour : node(child, motion).contours)
+      points.insert(points.end(), contour.begin(), contour.end());
+  }
+  Contour around = convex_hull(std::move(points));
+  if (around.size() < 3) return {};
+  return {{std::move(around)}};
+}
+
+/// In the plane of its children; a motion around it stretches what was grown.
+Outline CsgFlat::offset(const CsgNode& n, const std::optional<Affine>& motion) const {
+  const Outline grown = in_csg(source_, n, [&] { return offset_outline(united(n.children), bodies_.flat_offset(n)); });
+  return motion ? moved(grown, *motion) : grown;
 }
 
 Outline CsgFlat::multiplied(const CsgNode& n, const std::optional<Affine>& motion) const {

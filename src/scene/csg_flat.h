@@ -26,6 +26,8 @@ class CsgFlat {
   Outline node(const CsgNode& n, const std::optional<Affine>& motion) const;
   Outline difference(const CsgNode& n, const std::optional<Affine>& motion) const;
   Outline intersection(const CsgNode& n, const std::optional<Affine>& motion) const;
+  Outline hull(const CsgNode& n, const std::optional<Affine>& motion) const;
+  Outline offset(const CsgNode& n, const std::optional<Affine>& motion) const;
   Outline multiplied(const CsgNode& n, const std::optional<Affine>& motion) const;
 
   const Source& source_;

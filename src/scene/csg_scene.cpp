@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "evenmesh/error.h"
+#include "geometry/convex_hull.h"
 #include "scene/csg_bodies.h"
 #include "scene/csg_flat.h"
 #include "scene/csg_tree.h"
@@ -59,10 +60,11 @@ class CsgReader {
     if (n.name == "difference") return difference(n, around);
     if (n.name == "intersection") return intersection(n, around);
     if (n.name == "multmatrix") return multiplied(n, around);
+    if (n.name == "hull") return hull(n, around);
     if (n.name == "linear_extrude") return pulled(n, around);
     if (n.name == "rotate_extrude") return turned(n, around);
     if (CsgBodies::is_solid(n.name) || n.name == "import") return body(n, around);
-    if (CsgBodies::is_flat(n.name)) {
+    if (CsgBodies::is_flat(n.name) || n.name == "offset") {
       fail_in_csg(source_, n.at,
                   fmt::format("{} is flat where a solid is needed; extrude it", evenmesh::quoted(n.name)));
     }
@@ -132,6 +134,30 @@ class CsgReader {
     return in_csg(source_, n, [&] { return intersect(std::move(parts)); });
   }
 
+  Solid hull(const CsgNode& n, const Placement& around) const {
+    std::vector<Vec3> corners;
+    for (const CsgNode& child : n.children) {
+      if (child.left_out) continue;
+      if (const Solid part = node(child, around)) add_corners(child, *part, corners);
+    }
+    Mesh mesh = convex_hull(corners);
+    if (mesh.triangles.empty()) return {};
+    return in_csg(source_, n, [&] { return shape_from_mesh(std::move(mesh), n.name); });
+  }
+
+  /// Of a body, or of those in a union.
+  void add_corners(const CsgNode& n, const Shape& shape, std::vector<Vec3>& corners) const {
+    const Compound* compound = shape.compound();
+    if (const Mesh* mesh = shape.mesh()) {
+      corners.insert(corners.end(), mesh->vertices.begin(), mesh->vertices.end());
+    } else if (compound != nullptr && compound->kind == Compound::Kind::unite) {
+      for (const Shape& operand : compound->operands) add_corners(n, operand, corners);
+    } else {
+      fail_in_csg(source_, n.at,
+                  "a hull of differences and intersections is not supported; export this part as a mesh and import it");
+    }
+  }
+
   // Motions -----------------------------------------------------------------------------------------------------------
 
   Solid multiplied(const CsgNode& n, const Placement& around) const {
@@ -174,6 +200,7 @@ class CsgReader {
   }
 
   Solid imported(const CsgNode& n, const Placement& around) const {
+    refuse_drawing(source_, n);
     const CsgValue* file = csg_argument(n, "file", 0);
     if (file == nullptr || file->kind != CsgValue::Kind::text) fail_in_csg(source_, n.at, "import needs a file");
     return in_csg(source_, n,

@@ -239,10 +239,23 @@ bool is_csg_group(std::string_view name) {
   return name == "group" || name == "union" || name == "render" || name == "color";
 }
 
+void refuse_drawing(const Source& source, const CsgNode& node) {
+  const CsgValue* file = csg_argument(node, "file", 0);
+  if (file == nullptr || file->kind != CsgValue::Kind::text || file->text.size() < 4) return;
+  const std::string_view ending = std::string_view(file->text).substr(file->text.size() - 4);
+  for (const auto& [extension, kind] : {std::pair{".dxf", "DXF"}, std::pair{".svg", "SVG"}})
+    if (equals_ignoring_case(ending, extension))
+      fail_in_csg(
+          source, node.at,
+          fmt::format("import reads meshes, {} is a drawing ({}); let OpenSCAD extrude it, export that part as a "
+                      "mesh and import it",
+                      evenmesh::quoted(file->text), kind));
+}
+
 void refuse_csg_node(const Source& source, const CsgNode& node) {
-  constexpr std::array<std::string_view, 13> known{
-      "hull", "minkowski",  "projection", "text",       "surface",           "offset", "resize", "roof",
-      "fill", "import_stl", "import_off", "import_dxf", "dxf_linear_extrude"};
+  constexpr std::array<std::string_view, 11> known{
+      "minkowski",  "projection", "text",       "surface",           "resize", "roof", "fill",
+      "import_stl", "import_off", "import_dxf", "dxf_linear_extrude"};
   const bool is_known = std::find(known.begin(), known.end(), node.name) != known.end();
   fail_in_csg(source, node.at,
               fmt::format("{} {} is not supported; export this part as a mesh and import it",

@@ -46,6 +46,9 @@ std::vector<CsgNode> parse_csg(const Source& source, std::size_t depth);
 /// Whether a node is the union of its children: group, union, render, color.
 bool is_csg_group(std::string_view name);
 
+/// Throws UnusableInput if a node imports a drawing (DXF, SVG), which is not read.
+void refuse_drawing(const Source& source, const CsgNode& node);
+
 /// Throws UnusableInput: a node that is not read.
 [[noreturn]] void refuse_csg_node(const Source& source, const CsgNode& node);
 

@@ -106,13 +106,13 @@ class JsonReader {
     }
   }
 
-  /// They say what a length of 1 means; nothing is converted.
-  static void check_units(const JsonPlace& place) {
+  /// They say what a length of 1 means; meshes that know theirs are converted.
+  void read_units(const JsonPlace& place) const {
     if (!place.has("units")) return;
     const JsonPlace units = place.member("units");
-    const std::string name = units.text();
-    if (name != "mm" && name != "cm" && name != "m" && name != "in")
-      units.refuse("is none of mm, cm, m, in; take one of them, or leave it out");
+    const std::optional<LengthUnit> unit = unit_of_name(units.text());
+    if (!unit) units.refuse(fmt::format("is none of {}; take one of them, or leave it out", unit_names()));
+    loader_.set_unit(*unit);
   }
 
   Shape node(const JsonPlace& place, const Affine* placement, std::size_t depth) const {
@@ -122,7 +122,7 @@ class JsonReader {
     }
     const Kind& kind = kind_of(place);
     refuse_other_keys(place, kind, depth == 0);
-    if (depth == 0) check_units(place);
+    if (depth == 0) read_units(place);
     return (this->*kind.read)(place, placement, depth);
   }
 

@@ -1,25 +1,12 @@
 #pragma once
 /// Flat shapes: closed polygons with holes, and the triangles that fill them.
 
-#include <cstddef>
 #include <vector>
 
 #include "evenmesh/mesh.h"
-#include "geometry/predicates.h"
+#include "geometry/ear_clipping.h"
 
 namespace evenmesh {
-
-using Contour = std::vector<Point2>;
-
-/// Closed contours with the shape to their left: outer ones run counter-clockwise, holes clockwise.
-struct Outline {
-  std::vector<Contour> contours;
-
-  std::size_t points() const;
-};
-
-/// Twice the signed area, positive when counter-clockwise.
-double twice_area(const Contour& contour);
 
 /// The region inside of an odd number of paths, which may cross themselves and each other (see untangled).
 ///

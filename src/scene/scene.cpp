@@ -59,7 +59,9 @@ Shape parse_scene(std::string_view bytes, std::string_view name, const fs::path&
   const bool csg = has_extension(name, ".csg") || (!has_extension(name, ".json") && begins_like_csg(source.bytes));
   try {
     SceneLoader loader(folder, limits, context);
-    return csg ? read_csg_scene(source, loader, limits) : read_json_scene(source, loader, limits);
+    Shape scene = csg ? read_csg_scene(source, loader, limits) : read_json_scene(source, loader, limits);
+    scene.unit = loader.unit();
+    return scene;
   } catch (const std::bad_alloc&) {
     fail(source, "does not fit into the memory; reduce it or use a larger machine");
   }

@@ -45,19 +45,34 @@ Shape SceneLoader::once(std::map<fs::path, Shape>& known, const std::string& nam
   return found->second;
 }
 
+Shape SceneLoader::in_scene_unit(Shape shape) {
+  if (!unit_) unit_ = shape.unit;
+  return unit_ ? converted(shape, *unit_) : shape;
+}
+
 Shape SceneLoader::mesh_file(const std::string& name) {
   return once(meshes_, name, [&](const fs::path& path, const std::string& title) {
     if (const std::string ending = path.extension().string(); ending == ".csg" || ending == ".json") {
       throw UnusableInput(title +
                           ": is a scene, not a mesh; copy what it holds into this one, or make a mesh of it first");
     }
-    return shape_from_mesh(read_mesh(path, context_), title);
+    FileContents contents = read_mesh_or_points(path, context_);
+    Mesh* mesh = std::get_if<Mesh>(&contents.what);
+    if (mesh == nullptr) throw UnusableInput(title + ": holds points, not a mesh; name it under 'points'");
+    Shape shape = shape_from_mesh(std::move(*mesh), title);
+    shape.findings = std::move(contents.findings);
+    return in_scene_unit(std::move(shape));
   });
 }
 
 Shape SceneLoader::point_file(const std::string& name) {
   return once(points_, name, [&](const fs::path& path, const std::string& title) {
-    return shape_from_points(read_points(path, context_), title);
+    FileContents contents = read_mesh_or_points(path, context_);
+    PointCloud* cloud = std::get_if<PointCloud>(&contents.what);
+    if (cloud == nullptr) throw UnusableInput(title + ": holds a mesh, not points; name it under 'mesh'");
+    Shape shape = shape_from_points(std::move(*cloud), title);
+    shape.findings = std::move(contents.findings);
+    return shape;
   });
 }
 

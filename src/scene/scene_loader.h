@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,7 @@ class SceneLoader {
 
   /// The solid in a mesh file, or the surface of a point file; read once however often it is asked for.
   /// @param name  relative to the scene's folder, or absolute
+  /// Meshes in another unit than the scene are converted; where the scene names none, the first mesh that has one does.
   Shape mesh_file(const std::string& name);
   Shape point_file(const std::string& name);
   Shape dexel_file(const std::string& name);
@@ -37,9 +39,12 @@ class SceneLoader {
   void spend(std::uint64_t count);
 
   ExecutionContext& run() const { return context_; }
+  std::optional<LengthUnit> unit() const { return unit_; }
+  void set_unit(LengthUnit unit) { unit_ = unit; }
 
  private:
   std::filesystem::path file(const std::string& name) const;
+  Shape in_scene_unit(Shape shape);
   /// What read(path, title) makes of a file, the first time it is asked for.
   template <typename Read>
   Shape once(std::map<std::filesystem::path, Shape>& known, const std::string& name, const Read& read);
@@ -47,6 +52,7 @@ class SceneLoader {
   std::filesystem::path folder_;
   std::uint64_t left_;
   ExecutionContext& context_;
+  std::optional<LengthUnit> unit_;
   std::map<std::filesystem::path, Shape> meshes_, points_, dexels_;
 };
 

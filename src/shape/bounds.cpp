@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -82,14 +83,21 @@ std::size_t middles_inside(const Field& field, const std::vector<Cell>& cells) {
   return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), is_negative));
 }
 
-/// True when f ≥ 0 is proved on the cells; gives up where the solid shows itself, or at the last subdivision.
-bool proved_outside(const Field& field, std::vector<Cell> cells) {
-  return each_undecided(
+/// What is known of some cells: f ≥ 0 is proved on them, the solid shows itself in them, or neither.
+enum class Seen { outside, solid, unknown };
+
+/// Gives up where the solid shows itself, or at the last subdivision.
+Seen seen_in(const Field& field, std::vector<Cell> cells) {
+  Seen seen = Seen::outside;
+  each_undecided(
       field, std::move(cells), [](const Box&) { return false; },
       [&](const std::vector<Cell>& some) {
-        return std::none_of(some.begin(), some.end(), [](const Cell& cell) { return cell.depth == 0; }) &&
-               middles_inside(field, some) == 0;
+        if (std::any_of(some.begin(), some.end(), [](const Cell& cell) { return cell.depth == 0; }))
+          seen = Seen::unknown;
+        if (middles_inside(field, some) > 0) seen = Seen::solid;
+        return seen == Seen::outside;
       });
+  return seen;
 }
 
 /// The 56 cells of side `half` between the cubes of half sides `half` and 2·half.
@@ -113,13 +121,16 @@ std::vector<Cell> cells_of_shell(double half) {
   throw UnusableInput(message);
 }
 
-/// Half side of a cube that holds the solid.
-double half_side_of_cube(const Field& field) {
+/// Half side of a cube that holds the solid; none where that cannot be proved, though the solid does not show itself
+/// far out.
+std::optional<double> half_side_of_cube(const Field& field) {
   for (int exponent = largest_exponent; exponent > smallest_exponent; --exponent) {
     const double half = std::ldexp(1.0, exponent - 1);
-    if (proved_outside(field, cells_of_shell(half))) continue;
-    if (exponent == largest_exponent) throw_unbounded(field);
-    return 2 * half;
+    const Seen seen = seen_in(field, cells_of_shell(half));
+    if (seen == Seen::outside) continue;
+    if (exponent < largest_exponent) return 2 * half;
+    if (seen == Seen::solid) throw_unbounded(field);
+    return {};
   }
   return std::ldexp(1.0, smallest_exponent);
 }
@@ -138,12 +149,22 @@ void add_possible_cells(const Field& field, const Box& box, Box& found) {
       });
 }
 
+/// Quotients by what passes through zero, and the like, enclose nothing: points are asked instead.
+Box unproved_bounds(const Field& field) {
+  try {
+    return probed_bounds(field);
+  } catch (const UnusableInput&) {
+    throw_unbounded(field);
+  }
+}
+
 }  // namespace
 
 Box find_bounds(const Field& field) {
   if (!knows_intervals(field)) return probed_bounds(field);
-  const double half = half_side_of_cube(field);
-  Box box{{-half, -half, -half}, {half, half, half}};
+  const std::optional<double> half = half_side_of_cube(field);
+  if (!half) return unproved_bounds(field);
+  Box box{{-*half, -*half, -*half}, {*half, *half, *half}};
   for (int round = 0; round < 40; ++round) {
     Box found = inside_points(field, box, {32, 32, 32}).box;
     const bool seen = !found.empty();

@@ -80,7 +80,10 @@ Shape shape_from_mesh(Mesh mesh, std::string name) {
     }
   }
   const Box bounds = mesh.bounds();
-  return Shape{std::move(name), bounds, std::make_shared<const Mesh>(std::move(mesh)), false};
+  const std::optional<LengthUnit> unit = mesh.unit;
+  Shape shape{std::move(name), bounds, std::make_shared<const Mesh>(std::move(mesh)), false};
+  shape.unit = unit;
+  return shape;
 }
 
 Shape shape_from_points(PointCloud points, std::string name) {

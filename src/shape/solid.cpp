@@ -24,11 +24,22 @@ bool is_bounded(const Shape& shape) {
 Shape compound(Compound::Kind kind, std::vector<Shape> operands, double distance, const std::string& name) {
   for (const Shape& operand : operands) require_solid(operand);
   Compound made{kind, std::move(operands), distance};
+  std::optional<LengthUnit> unit;
+  std::vector<Finding> findings;
+  for (const Shape& operand : made.operands) {
+    if (!unit) unit = operand.unit;
+    for (const Finding& finding : operand.findings) {
+      const auto same = [&](const Finding& said) { return said.sentence == finding.sentence; };
+      if (std::none_of(findings.begin(), findings.end(), same)) findings.push_back(finding);  // of copies once
+    }
+  }
   const bool known = kind == Compound::Kind::subtract
                          ? is_bounded(made.operands[0])
                          : std::all_of(made.operands.begin(), made.operands.end(), is_bounded);
   Shape shape{name, {}, std::make_shared<const Compound>(std::move(made)), true};
   if (known) shape.bounds = find_bounds(shape);  // otherwise when it is sampled
+  shape.unit = unit;
+  shape.findings = std::move(findings);
   return shape;
 }
 
@@ -94,8 +105,9 @@ Shape transformed_compound(const Shape& shape, const Affine& transform) {
 
 }  // namespace
 
-Shape transformed(const Shape& shape, const Affine& transform) {
-  transform.inverse();  // complains where there is none
+namespace {
+
+Shape moved_shape(const Shape& shape, const Affine& transform) {
   if (shape.compound()) return transformed_compound(shape, transform);
   if (const PointCloud* given = shape.points()) {
     PointCloud points = *given;
@@ -124,6 +136,28 @@ Shape transformed(const Shape& shape, const Affine& transform) {
   if (shape.capped_by_bounds && !shape.bounds.empty()) field = boxed_field(std::move(field), shape.bounds);
   moved.bounds = transformed_box(shape.bounds, transform);
   moved.what = transformed_field(std::move(field), transform);
+  return moved;
+}
+
+}  // namespace
+
+Shape converted(const Shape& shape, LengthUnit unit) {
+  const double factor = shape.unit ? conversion_factor(*shape.unit, unit) : 1;
+  if (factor == 1) return shape;
+  Shape scaled = transformed(shape, {{Vec3{factor, 0, 0}, Vec3{0, factor, 0}, Vec3{0, 0, factor}}, {}});
+  scaled.unit = unit;
+  scaled.findings.push_back(make_finding(FindingCode::unit_converted, {{"name", shape.name},
+                                                                       {"from", std::string(plural_of(*shape.unit))},
+                                                                       {"to", std::string(plural_of(unit))},
+                                                                       {"factor", factor}}));
+  return scaled;
+}
+
+Shape transformed(const Shape& shape, const Affine& transform) {
+  transform.inverse();  // complains where there is none
+  Shape moved = moved_shape(shape, transform);
+  moved.unit = shape.unit;
+  moved.findings = shape.findings;
   return moved;
 }
 

@@ -36,7 +36,8 @@ TEST_F(Usage, HelpOfMeshDescribesEveryOptionOnce) {
         "--start",       "--seed",       "--connect",     "--topology",  "--features",   "--density",
         "--threads",     "--backend",    "--report",      "--json",      "--quiet",      "--verbose",
         "--progress",    "--expression", "--define",      "--entry",     "--raster",     "--raster-vertices",
-        "--dump-dexels", "--dump-shell", "--outliers",    "--placement", "--max-cycle",  "--format"}) {
+        "--dump-dexels", "--dump-shell", "--outliers",    "--placement", "--max-cycle",  "--format",
+        "--unit"}) {
     const std::size_t first = help.find(std::string(option) + " ");
     ASSERT_TRUE(first != std::string::npos || help.find(std::string(option) + "\n") != std::string::npos) << option;
   }
@@ -189,12 +190,12 @@ TEST_F(Usage, WrongScenesAreStatus3AndSayWhere) {
   write("axis.json", R"({"transform": {"rotate": {"axis": [0,0,0], "degrees": 9}}, "of": {"gallery": "sphere"}})");
   write("file.json", R"({"union": [{"mesh": "none.stl"}]})");
   write("text.json", "1 2 3\n");
-  write("hull.csg", "group() {\n hull() { cube(); }\n}\n");
+  write("sum.csg", "group() {\n minkowski() { cube(); }\n}\n");
   const std::vector<std::pair<const char*, const char*>> cases{
       {"axis.json", "axis.json: transform.rotate.axis: needs three numbers, not all zero"},
       {"file.json", "file.json: union[0].mesh: there is no file 'none.stl'"},
       {"text.json", "text.json: line 1, column 3: this is no JSON"},
-      {"hull.csg", "hull.csg: line 2, column 2: the OpenSCAD node 'hull' is not supported"},
+      {"sum.csg", "sum.csg: line 2, column 2: the OpenSCAD node 'minkowski' is not supported"},
       {"missing.json", "missing.json: no such file"},
   };
   for (const auto& [name, words] : cases) {
@@ -216,7 +217,7 @@ TEST_F(Usage, UnreadableInputIsStatus3) {
         "property float y\nproperty float z\nend_header\n");
   write("word.xyz", "0 0 0\n1 one 0\n");
   write("count.pts", "9\n0 0 0\n1 1 1\n");
-  write("faceless.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  write("faceless.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n");
   std::filesystem::create_directory(folder / "folder.obj");
   for (const char* name : {"missing.obj", "missing.xyz", "empty.obj", "garbage.stl", "binary.ply", "truncated.off",
                            "nan.obj", "index.obj", "huge.ply", "word.xyz", "count.pts", "faceless.obj", "folder.obj"}) {

@@ -56,8 +56,8 @@ save("ply/le_coloured.ply", ply_header(LE, more=[f"property uchar {c}" for c in 
 strip = ply_header(LE, 4, 1, lists="list int int vertex_indices").replace("element face", "element tristrips")
 save("ply/strips.ply", strip.encode() + ply_body("<")[:48] + struct.pack("<10i", 9, 0, 1, 2, 3, -1, 0, 2, 1, 3))
 save("ply/bad_index.ply", ply_header("ascii") + ASCII_V + ASCII_F.replace("2 3", "2 9", 1))
-save("ply/bad_nan.ply", ply_header("ascii") + ASCII_V.replace("1 0 0", "nan 0 0") + ASCII_F)
-save("ply/bad_inf.ply", ply_header(LE).encode() + struct.pack("<f", float("inf")) + ply_body("<")[4:])
+save("ply/nan_vertex.ply", ply_header("ascii") + ASCII_V.replace("1 0 0", "nan 0 0") + ASCII_F)
+save("ply/inf_vertex.ply", ply_header(LE).encode() + struct.pack("<f", float("inf")) + ply_body("<")[4:])
 save("ply/bad_truncated.ply", ply_header(LE).encode() + ply_body("<")[:-5])
 save("ply/bad_huge.ply", ply_header(LE, 10**18, 10**18).encode() + ply_body("<"))
 save("ply/bad_huge_list.ply", ply_header(LE, 4, 1, lists="list uint int vertex_indices").encode()
@@ -248,7 +248,11 @@ save("3mf/production.3mf", package(
     '<item objectid="2"/>', more=[("3D/Objects/a.model", model(ONE, ""))]))
 save("3mf/prefixed.3mf", package(ONE.replace("<vert", "<c:vert").replace("</vert", "</c:vert").replace('"', "'"), ITEM))
 save("3mf/bad_index.3mf", package(ONE.replace('v3="3"', 'v3="4"'), ITEM))
-save("3mf/bad_nan.3mf", package(ONE.replace('x="1"', 'x="nan"'), ITEM))
+save("3mf/nan_vertex.3mf", package(ONE.replace('x="1"', 'x="nan"'), ITEM))
+save("3mf/support.3mf", package(ONE + f'<object id="2" type="support">{MESH}</object>', ITEM + ITEM.replace("1", "2")))
+save("3mf/bad_support.3mf", package(ONE.replace('"model"', '"support"'), ITEM))
+save("3mf/bad_unit.3mf", zip_file([("_rels/.rels", RELS % "m.model"),
+                                   ("m.model", model(ONE, ITEM).replace('"inch"', '"inches"'))]))
 save("3mf/bad_object.3mf", package(ONE, '<item objectid="7"/>'))
 save("3mf/bad_cycle.3mf", package('<object id="1"><components><component objectid="1"/></components></object>', ITEM))
 BOMB = ONE + "".join(f'<object id="{i + 1}"><components><component objectid="{i}"/><component objectid="{i}"/></components>'
@@ -318,8 +322,8 @@ save("points/all_nan.pwn", table(ROWS, 4 * ["nan 0 0"], before="4\n"))
 save("points/bad_empty.xyz", "")
 save("points/bad_comments.xyz", "# nothing\n\n  // but words\n")
 save("points/bad_word.xyz", table(ROWS).replace("0 1 0", "0 one 0"))
-save("points/bad_nan.xyz", table(ROWS).replace("0 1 0", "0 nan 0"))
-save("points/bad_inf.xyz", table(ROWS).replace("0 1 0", "0 1e999 0"))
+save("points/nan_point.xyz", "0 nan 0\n" + table(ROWS))
+save("points/inf_point.xyz", table(ROWS) + "0 1e999 0\n")
 save("points/bad_two_columns.xyz", "1 2\n3 4\n")
 save("points/bad_columns.xyz", table(ROWS).replace("0 1 0", "0 1 0 7"))
 save("points/bad_truncated.xyz", table(ROWS, NORMALS)[:-5])
@@ -333,11 +337,61 @@ save("points/bad_huge.pts", table(ROWS, before="99999999999999999999\n"))
 save("points/bad_only_count.pts", "4\n")
 save("points/bad_truncated.pwn", (table(ROWS, before="4\n") + table(NORMALS))[:-6])
 save("points/bad_no_normals.pwn", table(ROWS, before="4\n"))
-save("points/bad_nan.ply", point_ply("ascii", "xyz", V) + table(ROWS).replace("0 1 0", "0 nan 0"))
+save("points/nan_point.ply", point_ply("ascii", "xyz", [0, *V]) + "0 nan 0\n" + table(ROWS))
 save("points/bad_truncated.ply", point_ply(LE, "xyz", V).encode() + b"\0" * 47)
 save("points/bad_huge.ply", point_ply(LE, XYZN, V).replace("vertex 4", f"vertex {10**15}"))
 save("points/bad_none.ply", point_ply("ascii", "xyz", []))
 save("points/bad_mesh.ply", ply_header("ascii") + ASCII_V + ASCII_F)
+
+save("points/titles.xyz", "X Y Z\n" + table(ROWS))
+save("points/titles_normals.csv", '# of a spreadsheet\n"x", "y", "z", "nx", "ny", "nz"\n' + table(ROWS, NORMALS).replace(" ", ","))
+save("points/plain.obj", "".join(f"v {r}\n" for r in ROWS))
+save("points/normals.obj", "".join(f"vn {n}\nv {r}\n" for n, r in zip(NORMALS, ROWS)))
+save("points/plain.off", "OFF\n4 0 0\n" + table(ROWS))
+save("points/bad_lines.obj", "".join(f"v {r}\n" for r in ROWS) + "l 1 2\n")
+
+
+def lzf(data):
+    """Packs as liblzf does: runs of up to 32 bytes, copies of 3 to 264 from up to 8192 back."""
+    out, run, i = b"", b"", 0
+    while i <= len(data):
+        ends = [(n, b) for b in range(1, i + 1) for n in range(264, 2, -1)
+                if i + n <= len(data) and (data[i - b:i] * n)[:n] == data[i:i + n]] if i < len(data) else []
+        if run and (ends or i == len(data) or len(run) == 32):
+            out, run = out + bytes([len(run) - 1]) + run, b""
+        if i == len(data):
+            break
+        if not ends:
+            run, i = run + data[i:i + 1], i + 1
+            continue
+        n, b = max(ends)
+        out += bytes([(n - 2) << 5 | (b - 1) >> 8] if n < 9 else [7 << 5 | (b - 1) >> 8, n - 9]) + bytes([b - 1 & 255])
+        i += n
+    return out
+
+
+def pcd(kind, names, rows, sizes=4, types="F", body=b"", count=1):
+    fields = names.split()
+    line = lambda key, value: f"{key} " + " ".join([str(value)] * len(fields)) + "\n"
+    return ("# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + names + "\n" + line("SIZE", sizes)
+            + line("TYPE", types) + line("COUNT", count) + f"WIDTH {len(rows)}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n"
+            f"POINTS {len(rows)}\nDATA {kind}\n").encode() + body
+
+
+PCD = "x y z normal_x normal_y normal_z"
+COLUMNS = b"".join(struct.pack("<4f", *c) for c in zip(*BOTH))
+PACKED = struct.pack("<2I", len(lzf(COLUMNS)), len(COLUMNS)) + lzf(COLUMNS)
+save("points/ascii_normals.pcd", pcd("ascii", PCD, V, body=table(ROWS, NORMALS).encode()))
+save("points/colours.pcd", pcd("ascii", "rgb x y z", V, body=table(["7", "8", "nan", "9"], ROWS).encode()))
+save("points/binary_normals.pcd", pcd("binary", PCD, V, 8, body=b"".join(struct.pack("<6d", *r) for r in BOTH)))
+save("points/whole.pcd", pcd("binary", "x y z", V, 2, "I", b"".join(struct.pack("<3h", *v) for v in V)))
+save("points/packed_normals.pcd", pcd("binary_compressed", PCD, V, body=PACKED))
+save("points/nan_point.pcd", pcd("ascii", "x y z", [0, *V], body=b"nan nan nan\n" + table(ROWS).encode()))
+save("points/bad_packed.pcd", pcd("binary_compressed", PCD, V, body=PACKED[:30] + b"\xff" * (len(PACKED) - 30)))
+save("points/bad_truncated.pcd", pcd("binary", PCD, V, body=b"\0" * 95))
+save("points/bad_kind.pcd", pcd("text", PCD, V))
+save("points/bad_fields.pcd", pcd("ascii", "x y w", V, body=table(ROWS).encode()))
+save("points/bad_size.pcd", pcd("binary", "x y z", V, 3, body=b"\0" * 36))
 
 # Scenes -------------------------------------------------------------------------------------------------------------
 BALL = {"implicit": "x^2+y^2+z^2-R^2", "parameters": {"R": 1}, "bounds": [-2, -2, -2, 2, 2, 2]}
@@ -403,7 +457,7 @@ linear_extrude(height = 1) {{ polygon(points = [[0, 0], [3, 0], [3, 3], [1, 1], 
 save("scene/import.csg", 'group() {\n\timport(file = "../off/plain.off", layer = "", origin = [0, 0], timestamp = 0);\n}\n')
 save("scene/root.csg", "sphere(); !cube(); /* rest */ cylinder();\n")
 save("scene/star.csg", "linear_extrude(height = 1) { polygon(points = [[0, 3], [2, -3], [-3, 1], [3, 1], [-2, -3]]); }\n")
-save("scene/bad_hull.csg", "hull() {\n\tcube();\n}\n")
+save("scene/bad_minkowski.csg", "minkowski() {\n\tcube();\n}\n")
 save("scene/bad_flat.csg", "square(size = 1);\n")
 save("scene/bad_nothing.csg", "group();\n")
 save("scene/bad_brace.csg", "union() { cube();\n")

@@ -49,7 +49,7 @@ TEST(Errors, OfTextNameTheLine) {
   expect_says(refusal("v 0 0\nf 1 1 1\n", "a.obj"),
               "a.obj: line 1: expected a coordinate of the vertex, found the end of");
   expect_says(refusal("v 0 0 0\nv 0 inf 0\nv 1 1 1\nf 1 2 3\n", "a.obj"),
-              "line 2: a coordinate is not a finite number");
+              "a.obj: holds no triangle whose coordinates are all finite numbers");
   expect_says(refusal("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "a.off"), "a.off: line 6: vertex index 3 is out");
   expect_says(refusal("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "a.off"), "a.off: line 4: expected a coordinate");
   expect_says(refusal("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n", "a.stl"),

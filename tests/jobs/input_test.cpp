@@ -9,6 +9,8 @@
 #include "evenmesh/dexels.h"
 #include "evenmesh/error.h"
 #include "evenmesh/io.h"
+#include "evenmesh/mesh_shape.h"
+#include "evenmesh/solid.h"
 
 namespace evenmesh {
 namespace {
@@ -49,6 +51,58 @@ class Inputs : public testing::Test {
 
   std::filesystem::path folder_;
 };
+
+/// A tetrahedron with edges of one inch.
+std::string inches() {
+  return serialize_mesh(
+      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, LengthUnit::inch},
+      MeshFormat::threemf);
+}
+
+TEST_F(Inputs, KeepTheirUnit) {
+  const Shape shape = parse_shape(inches(), "a.3mf");
+  EXPECT_EQ(shape.unit, LengthUnit::inch);
+  const Shape same = in_one_unit({shape})[0], millimeters = in_one_unit({shape}, LengthUnit::millimeter)[0];
+  EXPECT_EQ(same.bounds.hi, (Vec3{1, 1, 1}));
+  EXPECT_EQ(millimeters.bounds.hi, (Vec3{25.4, 25.4, 25.4}));
+  EXPECT_EQ(millimeters.unit, LengthUnit::millimeter);
+  ASSERT_EQ(millimeters.findings.size(), 1u);
+  EXPECT_EQ(millimeters.findings[0].code, FindingCode::unit_converted);
+}
+
+TEST_F(Inputs, OfSeveralUnitsGetThatOfTheFirst) {
+  const Shape unknown = parse_shape(tetrahedron, "a.obj"), inch = parse_shape(inches(), "a.3mf");
+  const Shape meter = converted(inch, LengthUnit::meter);
+  const std::vector<Shape> shapes = in_one_unit({unknown, inch, meter});
+  for (const Shape& shape : shapes) {
+    EXPECT_EQ(shape.unit, LengthUnit::inch);
+    EXPECT_LT(norm(shape.bounds.hi - Vec3{1, 1, 1}), 1e-15);
+  }
+  EXPECT_FALSE(in_one_unit({unknown})[0].unit) << "nobody knows";
+}
+
+TEST_F(Inputs, ScenesConvertMeshesThatKnowTheirUnit) {
+  file("a.3mf", inches());
+  file("a.obj", tetrahedron);
+  const Shape shape = read_shape(file("a.json", R"({"units": "mm", "union": [{"mesh": "a.3mf"}, {"mesh": "a.obj"}]})"));
+  EXPECT_EQ(shape.unit, LengthUnit::millimeter);
+  EXPECT_EQ(shape.bounds.hi, (Vec3{25.4, 25.4, 25.4}));
+  EXPECT_EQ(shape.findings.size(), 1u);
+  EXPECT_EQ(read_shape(file("b.json", R"({"mesh": "a.3mf"})")).unit, LengthUnit::inch);
+  EXPECT_FALSE(read_shape(file("c.json", R"({"mesh": "a.obj"})")).unit);
+}
+
+TEST_F(Inputs, UnitsAndFindingsOfReadingReachTheResult) {
+  std::string text = tetrahedron;
+  text += "v nan 0 0\nf 5 1 2\n";
+  Shape shape = parse_shape(text, "a.obj");
+  shape.unit = LengthUnit::foot;
+  const Shape grown = offset(shape, 0.1);
+  const MeshResult result = mesh_shape(grown, {.vertices = 200});
+  EXPECT_EQ(result.mesh.unit, LengthUnit::foot);
+  ASSERT_FALSE(result.report.findings.empty());
+  EXPECT_EQ(result.report.findings[0].code, FindingCode::vertices_not_finite);
+}
 
 TEST_F(Inputs, AreRecognizedByContentAndName) {
   EXPECT_EQ(kind_of_input("gallery:octic"), InputKind::built_in);

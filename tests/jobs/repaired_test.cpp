@@ -47,6 +47,17 @@ TEST(Repaired, ASolidBecomesItsOuterHull) {
   EXPECT_EQ(r.shape.name, "ball");
 }
 
+TEST(Repaired, KeepsTheUnitAndWhatWasSaid) {
+  Shape shape = damaged_ball();
+  shape.unit = LengthUnit::inch;
+  shape.findings.push_back(make_finding(FindingCode::no_area, {{"count", 1.0}}));
+  for (const Hull hull : {Hull::outer, Hull::wrap}) {
+    const Repaired r = repaired(shape, hull);
+    EXPECT_EQ(r.shape.unit, LengthUnit::inch);
+    EXPECT_EQ(r.shape.findings.size(), 1u);
+  }
+}
+
 TEST(Repaired, SheetsAreWrapped) {
   const Repaired r = repaired(bowl());
   EXPECT_TRUE(r.wrapped_sheets);

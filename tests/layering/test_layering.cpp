@@ -38,6 +38,7 @@ const std::map<std::string, std::string> public_headers{
     {"execution_context.h", "core"},
     {"findings.h", "geometry"},
     {"mesh.h", "geometry"},
+    {"units.h", "geometry"},
     {"density.h", "geometry"},
     {"shape.h", "shape"},
     {"measure.h", "measure"},

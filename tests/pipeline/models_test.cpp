@@ -29,7 +29,7 @@ TEST_P(BandOfModel, IsATwoManifold) {
   const std::filesystem::path path = data_file(model.name);
   if (!std::filesystem::exists(path))
     GTEST_SKIP() << path << " is not there: set EVENMESH_DATA to the folder of the test models";
-  auto input = read_mesh_or_points(path);
+  auto input = read_mesh_or_points(path).what;
   const Mesh* mesh = std::get_if<Mesh>(&input);
   const Shape shape = mesh ? shape_from_mesh(*mesh) : shape_from_points(std::get<PointCloud>(input));
   const MeshResult result = meshed(shape, by_shell(model.vertices));

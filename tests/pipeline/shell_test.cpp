@@ -62,6 +62,15 @@ TEST(ShellMethod, AHemisphereEndsAtItsRim) {
   EXPECT_LT(farthest, limit);
 }
 
+TEST(ShellMethod, SheetsEndOnTheirOwnBorder) {
+  const MeshResult result = meshed(shape_from_mesh(make_grid_plane(8, 4, 0.5)), by_shell(800));
+  expect_good_sheet(result);
+  const Box box = result.mesh.bounds();
+  EXPECT_LT(norm(box.lo), 1e-6);
+  EXPECT_LT(norm(box.hi - Vec3{4, 2, 0}), 1e-6);
+  EXPECT_NEAR(result.report.quality.area, 8, 0.03) << "corners are rounded off";
+}
+
 TEST(ShellMethod, ChosenByItselfForOpenMeshesAndPoints) {
   const MeshOptions options{.vertices = 200, .quality = Quality::fast};
   EXPECT_GT(meshed(shape_from_mesh(hemisphere(4)), options).report.sheets, 0u);

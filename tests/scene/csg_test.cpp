@@ -8,7 +8,10 @@
 namespace evenmesh::testing_scene {
 namespace {
 
-using Csg = SceneTest;
+class Csg : public SceneTest {
+ protected:
+  void says(const std::string& text, const std::string& words) const { expect_says(refusal(text, "a.csg"), words); }
+};
 
 /// The one mesh of a scene, closed.
 const Mesh& only_mesh(const Shape& shape) {
@@ -253,6 +256,53 @@ TEST_F(Csg, ModifiersLeaveOutOrChoose) {
   expect_box(chosen.bounds, {0, 0, 0}, {1, 1, 1});
 }
 
+TEST_F(Csg, Hulls) {
+  EXPECT_NEAR(volume(only_mesh(csg("hull() { cube(size = 1); multmatrix([[1, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, 0], "
+                                   "[0, 0, 0, 1]]) { cube(size = 1); } }"))),
+              3, 1e-12);
+  // A cube and a point beyond its top, as a cone of no size; a hull within a hull.
+  EXPECT_NEAR(
+      volume(only_mesh(csg("hull() { hull() { cube(size = 2, center = true); } union() { multmatrix([[1, 0, 0, 0], "
+                           "[0, 1, 0, 0], [0, 0, 1, 1], [0, 0, 0, 1]]) { cylinder($fn = 4, h = 3, r1 = 0.5, r2 = "
+                           "0); } } }"))),
+      8 + 4, 1e-9);
+  EXPECT_NEAR(
+      volume(only_mesh(csg("linear_extrude(height = 2) { hull() { square(size = 1); multmatrix([[1, 0, 0, 3], [0, "
+                           "1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { square(size = 1); } } }"))),
+      8, 1e-12);
+  says("hull() { difference() { cube(); sphere(r = 0.1); } }",
+       "a hull of differences and intersections is not supported");
+}
+
+TEST_F(Csg, OffsetsOfFlatShapes) {
+  const auto area = [&](const std::string& what) {
+    return volume(only_mesh(csg("linear_extrude(height = 1) { " + what + " }")));
+  };
+  const double pi = std::numbers::pi, corner = 1.5 - std::sqrt(2);  // cut off a unit square, half of it
+  const std::string square = "{ square(size = 2, center = true); }";
+  EXPECT_NEAR(area("offset(r = 1, $fn = 400) " + square), 12 + pi, 1e-3);
+  EXPECT_NEAR(area("offset(delta = 1, chamfer = false) " + square), 16, 1e-9);
+  EXPECT_NEAR(area("offset(delta = 1, chamfer = true) " + square), 16 - 8 * corner, 1e-9);
+  EXPECT_NEAR(area("offset(delta = -0.25) " + square), 1.5 * 1.5, 1e-9);
+  EXPECT_NEAR(area("offset(r = -0.25, $fn = 8) " + square), 1.5 * 1.5, 1e-9);
+  const std::string bend = "{ polygon(points = [[4, 0], [4, 1], [1, 1], [1, 4], [0, 4], [0, 0]]); }";
+  EXPECT_NEAR(area("offset(delta = -0.25) " + bend), 3.25, 1e-9);
+  EXPECT_NEAR(area("offset(r = -0.25, $fn = 400) " + bend), 3.25 + (1 - pi / 4) / 16, 1e-4);
+  const std::string frame = "{ difference() { square(size = 4, center = true); square(size = 2, center = true); } }";
+  EXPECT_NEAR(area("offset(delta = 0.5) " + frame), 24, 1e-9);
+  EXPECT_NEAR(area("offset(delta = 1) " + frame), 36, 1e-9) << "the hole is gone";
+  EXPECT_EQ(area("multmatrix([[-2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { offset(delta = 0.5) " +
+                 square + " }"),
+            18);
+  says("linear_extrude(height = 1) { offset(delta = -1) " + square + " }", "holds no solid");
+}
+
+TEST_F(Csg, DrawingsAreNamed) {
+  says("linear_extrude(height = 1) { import(file = \"a.dxf\", layer = \"\"); }", "'a.dxf' is a drawing (DXF)");
+  says("import(file = \"a.SVG\");", "'a.SVG' is a drawing (SVG)");
+  says("linear_extrude(height = 1) { text(text = \"a\"); }", "the OpenSCAD node 'text' is not supported");
+}
+
 TEST_F(Csg, ImportsAreRelativeToTheScene) {
   const Shape shape =
       csg("import(file = \"tetra.off\", layer = \"\", origin = [0, 0], scale = 1, convexity = 1, timestamp = 1);");
@@ -261,11 +311,9 @@ TEST_F(Csg, ImportsAreRelativeToTheScene) {
 }
 
 TEST_F(Csg, ErrorsNameLineAndColumn) {
-  const auto says = [&](const std::string& text, const std::string& words) {
-    expect_says(refusal(text, "a.csg"), words);
-  };
-  says("group() {\n  hull() { cube(); }\n}", "a.csg: line 2, column 3: the OpenSCAD node 'hull' is not supported");
-  for (const char* name : {"minkowski", "projection", "text", "surface", "offset"}) {
+  says("group() {\n  minkowski() { cube(); }\n}",
+       "a.csg: line 2, column 3: the OpenSCAD node 'minkowski' is not supported");
+  for (const char* name : {"minkowski", "projection", "text", "surface", "resize"}) {
     says(std::string(name) + "();", "line 1, column 1: the OpenSCAD node '" + std::string(name) + "' is not supported");
   }
   says("cubes();", "a.csg: line 1, column 1: the unknown node 'cubes' is not supported");

@@ -29,7 +29,7 @@ TEST_F(Json, NameUnitsAndSchemaAtTheTop) {
   const std::string rest = R"(, "units": "mm", "$schema": "scene.schema.json", "mesh": "tetra.off"})";
   EXPECT_EQ(json(R"({"name": "part")" + rest).name, "part");
   EXPECT_EQ(json(R"({"mesh": "tetra.off"})").name, "scene.json");
-  expect_says(refusal(R"({"units": "miles", "mesh": "tetra.off"})"), "scene.json: units: is none of mm, cm, m, in");
+  expect_says(refusal(R"({"units": "miles", "mesh": "tetra.off"})"), "scene.json: units: is none of micron, mm, cm, m, in, ft");
   expect_says(refusal(R"({"union": [{"mesh": "tetra.off", "units": "mm"}]})"),
               "scene.json: union[0]: has 'units', which is for the top");
 }
@@ -145,7 +145,7 @@ TEST_F(Json, ErrorsNameThePath) {
   says(R"({"mesh": "none.stl"})", "scene.json: mesh: there is no file '");
   says(R"({"mesh": ""})", "scene.json: mesh: needs a text in quotes");
   says(R"({"mesh": "."})", "is not a regular file");
-  says(R"({"mesh": "points.xyz"})", "holds no triangles");
+  says(R"({"mesh": "points.xyz"})", "holds points, not a mesh; name it under 'points'");
   says(R"({"points": "tetra.off"})", "scene.json: points: ");
   says(R"({"gallery": "spere"})", "sphere");
   says(

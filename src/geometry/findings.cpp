@@ -18,6 +18,18 @@ struct Kind {
 constexpr auto note = Severity::note, warning = Severity::warning, broken = Severity::broken_promise;
 
 constexpr std::array kinds{
+    Kind{FindingCode::vertices_not_finite, warning, "vertices-not-finite",
+         "{name}: {count:.0f} {what} whose coordinates are not finite numbers {were} left out{also}"},
+    Kind{FindingCode::polygons_not_simple, warning, "polygons-not-simple",
+         "{name}: {count:.0f} of its polygons cross themselves or have too many corners, first at ({x:.4g}, {y:.4g}, "
+         "{z:.4g}): their triangles go out from their first corner and may cover something else; cut them into simple "
+         "polygons"},
+    Kind{FindingCode::objects_left_out, warning, "objects-left-out",
+         "{name}: {count:.0f} {what} of type '{type}' {were} left out; make {them} of type 'model' to keep {them}"},
+    Kind{FindingCode::line_skipped, note, "line-skipped",
+         "{name}: line {line:.0f}, {text}, holds titles, not a point, and was skipped"},
+    Kind{FindingCode::unit_converted, note, "unit-converted",
+         "{name}: lengths are converted from {from} to {to} (times {factor:.6g})"},
     Kind{FindingCode::fineness_estimated, note, "fineness-estimated",
          "no -n or -l given: {vertices:.0f} vertices, from area {area:.4g}{also}"},
     Kind{FindingCode::resolution_limited, warning, "resolution-limited",
@@ -27,6 +39,10 @@ constexpr std::array kinds{
          "with {vertices:.0f}"},
     Kind{FindingCode::point_gaps_bridged, note, "point-gaps-bridged",
          "points about {spacing:.3g} apart: gaps of up to {gap:.3g} ({voxels:.0f} voxels) are bridged"},
+    Kind{
+        FindingCode::one_sided, warning, "one-sided",
+        "{count:.0f} triangles of the input form a surface with one side only, as a Klein bottle or a Möbius strip: it "
+        "has no inside, and no mesh can face one way on it, so {what}"},
     Kind{FindingCode::inside_by_vote, warning, "inside-by-vote",
          "the input is not closed: inside or outside was settled by vote at {count:.0f} grid points"},
     Kind{FindingCode::not_finite, warning, "not-finite",
@@ -71,6 +87,13 @@ constexpr std::array kinds{
     Kind{FindingCode::self_intersections, broken, "self-intersections",
          "{count:.0f} pairs of triangles intersect each other; ask for more vertices"},
     Kind{FindingCode::no_area, broken, "no-area", "{count:.0f} triangles have no area; ask for more vertices"},
+    Kind{FindingCode::coarser_than_curvature, warning, "coarser-than-curvature",
+         "{percent:.0f} % of the edges are longer than the radius of curvature there, so that finer detail is lost: "
+         "about "
+         "{vertices:.0f} vertices would show it"},
+    Kind{FindingCode::unit_lost, warning, "unit-lost",
+         "{format} files have no place for a unit: the coordinates stay in {unit}, which their reader has to know; "
+         "--unit {usual} converts them"},
 };
 
 const Kind& kind_of(FindingCode code) {
@@ -82,7 +105,7 @@ constexpr bool in_order() {
     if (static_cast<std::size_t>(kinds[i].code) != i) return false;
   return true;
 }
-static_assert(in_order() && kinds.size() == static_cast<std::size_t>(FindingCode::no_area) + 1);
+static_assert(in_order() && kinds.size() == static_cast<std::size_t>(FindingCode::unit_lost) + 1);
 
 std::string sentence_of(const Finding& finding, std::string_view pattern) {
   fmt::dynamic_format_arg_store<fmt::format_context> arguments;
