@@ -27,6 +27,20 @@ constexpr std::array kinds{
          "with {vertices:.0f}"},
     Kind{FindingCode::point_gaps_bridged, note, "point-gaps-bridged",
          "points about {spacing:.3g} apart: gaps of up to {gap:.3g} ({voxels:.0f} voxels) are bridged"},
+    Kind{FindingCode::triangles_turned, note, "triangles-turned",
+         "{count:.0f} triangles that faced other ways than those around them were turned"},
+    Kind{FindingCode::holes_filled, warning, "holes-filled",
+         "the input is not closed: {count:.0f} {holes} filled, the largest {size:.4g} across at ({x:.4g}, {y:.4g}, "
+         "{z:.4g}); --method shell keeps them open"},
+    Kind{FindingCode::parts_turned, warning, "parts-turned",
+         "{count:.0f} closed {parts} inside out beside others and turned, the largest {size:.4g} across at ({x:.4g}, "
+         "{y:.4g}, {z:.4g}); 'repair --hull oriented' lets such parts take away instead"},
+    Kind{FindingCode::sheets_left_out, broken, "sheets-left-out",
+         "{count:.0f} {sheets} of no thickness beside the solid, of area {area:.4g}: left out, the largest {size:.4g} "
+         "across at ({x:.4g}, {y:.4g}, {z:.4g}); --method shell keeps it"},
+    Kind{FindingCode::flakes_left_out, warning, "flakes-left-out",
+         "{count:.0f} loose triangles or sheets smaller than an edge of the mesh were left out, the largest {size:.4g} "
+         "across at ({x:.4g}, {y:.4g}, {z:.4g})"},
     Kind{FindingCode::inside_by_vote, warning, "inside-by-vote",
          "the input is not closed: inside or outside was settled by vote at {count:.0f} grid points"},
     Kind{FindingCode::not_finite, warning, "not-finite",

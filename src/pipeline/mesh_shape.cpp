@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "grid/sizing_field.h"
 #include "pipeline/draft.h"
+#include "pipeline/judge.h"
 #include "pipeline/kernels.h"
 #include "pipeline/plan.h"
 #include "pipeline/refine.h"
@@ -34,11 +36,22 @@ void check(const MeshOptions& o) {
     throw InvalidInput("the bounds are empty: each lower limit must be below its upper one");
 }
 
+/// First of all what became of the input.
+void say(const Judgement& judgement, const Sampler& sampler, Plan& plan, ExecutionContext& context) {
+  const double edge =
+      judgement.sheets.empty() ? 0 : edge_length_of(sampler.area(context), static_cast<double>(plan.vertices));
+  std::vector<Finding> findings = judgement.findings(edge);
+  plan.findings.insert(plan.findings.begin(), findings.begin(), findings.end());
+}
+
 MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
                Artifacts& kept) {
   StageTimer timer(context);
-  const std::unique_ptr<Sampler> sampler = make_sampler(shape, options.bounds, kernels, timer, context);
+  Judgement judgement;
+  const Shape solid = timer.stage("sample", 0, [&] { return judged(shape, options, judgement, context); });
+  const std::unique_ptr<Sampler> sampler = make_sampler(solid, options.bounds, kernels, timer, context);
   Plan plan = make_plan(*sampler, options, timer, context);
+  say(judgement, *sampler, plan, context);
   Sampling sampling = sample(*sampler, std::move(plan), options, timer, context, kept);
   const Tessellation cells = tessellate(std::move(sampling), options, kernels, timer, context);
   const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, options, context); });
