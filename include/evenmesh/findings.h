@@ -33,6 +33,8 @@ enum class FindingCode {
   not_finite,
   closed_by_bounds,
   crossings_unresolved,
+  cavities_filled,
+  gaps_filled,
   sheets_merged,
   sheets_cut,
   wrap_distance,

@@ -13,7 +13,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr double small_holes = 0.15;   ///< of a patch's area
+constexpr double small_holes = 0.25;   ///< of a patch's area
 constexpr double least_room = 1.35;    ///< behind a hole
 constexpr double worth_asking = 0.01;  ///< of all area: patches of which rays are asked
 constexpr double widest_holes = 0.5;   ///< of a patch's area, for rays to be asked

@@ -14,7 +14,7 @@ struct Leaks {
   std::vector<char> leaking;  ///< by triangle: of a patch that has an inside, but keeps a hole that cannot be filled
 };
 
-/// Patches whose holes are all to be filled: they have at most 0.15 of the patch's area, and none is a mouth
+/// Patches whose holes are all to be filled: they have at most a quarter of the patch's area, and none is a mouth
 /// (hole_room.h). Of others of which rays of three directions agree on an inside (solidity() of 0.6 and more) those
 /// holes whose fills lie half way between inside and outside.
 /// @param patch  of every triangle; patches that share the rim of a hole count as one

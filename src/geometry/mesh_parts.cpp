@@ -104,7 +104,7 @@ class Splitter {
     mesh_ = std::move(clean.mesh);
     patch_ = std::move(clean.patch);
     beside_ = std::move(clean.walls);
-    walls_ = !beside_.empty();
+    changed_ = !beside_.empty();
     leaking_.assign(mesh_.triangles.size(), 0);
   }
 
@@ -121,7 +121,7 @@ class Splitter {
     sort_largest_first(result_.sheet_pieces);
     result_.turned_triangles = turned_triangles_;
     const bool same = result_.filled_holes.empty() && result_.sheet_pieces.empty() && result_.turned_bodies.empty();
-    result_.as_given = same && turned_triangles_ == 0 && repeated_ == 0 && !walls_ && !mesh_.triangles.empty();
+    result_.as_given = same && turned_triangles_ == 0 && repeated_ == 0 && !changed_ && !mesh_.triangles.empty();
     if (!result_.as_given) result_.solid = packed(mesh_.vertices, std::move(mesh_.triangles));
     return std::move(result_);
   }
@@ -150,6 +150,7 @@ class Splitter {
   /// Moves patches beside; returns whether there are any.
   bool take(const std::vector<char>& gone) {
     if (std::find(gone.begin(), gone.end(), 1) == gone.end()) return false;
+    changed_ = true;
     std::size_t kept = 0;
     for (std::size_t t = 0; t < patch_.size(); ++t) {
       if (gone[patch_[t]]) {
@@ -262,7 +263,7 @@ class Splitter {
   std::vector<char> leaking_;         // triangles of patches that have an inside, though they are open
   std::vector<Triangle> beside_;      // what bounds nothing
   std::size_t turned_triangles_ = 0, repeated_ = 0;
-  bool walls_ = false;
+  bool changed_ = false;  // something was moved beside
   MeshParts result_;
 };
 

@@ -28,8 +28,8 @@ struct MeshParts {
 /// Tells solids from sheets, part by part.
 ///
 /// Patches with a free boundary bound nothing, unless their holes are few and small: such holes are filled. A hole is
-/// small if with the others of its patch it has at most 0.15 of the patch's area and is no mouth (hole_room.h), or if
-/// rays of three directions agree on the patch's inside (solidity()). What is left are closed bodies. One that faces
+/// small if with the others of its patch it has at most a quarter of the patch's area and is no mouth (hole_room.h), or
+/// if rays of three directions agree on the patch's inside (solidity()). What is left are closed bodies. One that faces
 /// inward and does not lie within another is turned, since it would take away what it overlaps; cavities stay, of
 /// models that are inside out as a whole, too.
 /// @param turn  false: bodies stay as they face

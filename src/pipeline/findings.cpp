@@ -49,6 +49,11 @@ constexpr std::array kinds{
     Kind{FindingCode::crossings_unresolved, warning, "crossings-unresolved",
          "parts thinner than a grid cell ({spacing:.3g}) were lost: {count:.0f} of {all:.0f} crossings were left out; "
          "-r {finer:.0f} resolves twice as much"},
+    Kind{FindingCode::cavities_filled, note, "cavities-filled",
+         "{count:.0f} {surfaces} within the solid, not reached from outside: filled; --hull all keeps {them}"},
+    Kind{FindingCode::gaps_filled, warning, "gaps-filled",
+         "gaps narrower than {gap:.3g}, where edges are longer, were filled with the surface in them, of area "
+         "{area:.4g}: ask for more vertices, or take --hull all"},
     Kind{FindingCode::sheets_merged, warning, "sheets-merged",
          "sheets that come within {width:.3g} of each other merge in {count:.0f} places, first at ({x:.4g}, {y:.4g}, "
          "{z:.4g}): {cure}"},

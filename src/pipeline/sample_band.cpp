@@ -3,44 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "band/enclosed.h"
 #include "band/filled_gaps.h"
 #include "band/narrow_band.h"
 #include "evenmesh/error.h"
 #include "grid/blocks.h"
-#include "grid/surface_components.h"
 #include "pipeline/sampling.h"
 
 namespace evenmesh {
 namespace {
-
-/// The sites around the outer border of a shell.
-SiteVoxels outer_border(const BandSurface& surface, const Sheets& outer, const VoxelGrid& grid,
-                        ExecutionContext& context) {
-  const SampleSet& samples = surface.samples;
-  std::vector<Vec3> points, normals;
-  for (const SampleBlock& block : samples.blocks)
-    for (std::uint32_t i = block.begin; i < block.end; ++i) {
-      if (!outer.chosen[i]) continue;
-      points.push_back(samples.block_center(block) + Vec3{samples.x[i], samples.y[i], samples.z[i]});
-      normals.push_back(unpack_normal(samples.normal[i]));
-    }
-  return voxelize_points(points, normals, grid, context);
-}
-
-/// The inner side of a shell, turned around: the border of what the shell encloses.
-SampleSet enclosed_by(const BandSurface& surface, ExecutionContext& context) {
-  const SurfaceComponents parts = surface_components(surface.samples, context);
-  std::vector<double> behind(parts.area.size(), 0);
-  for (std::uint32_t i = 0; i < surface.samples.size(); ++i)
-    if (surface.facing[i] < 0) behind[parts.part[i]] += surface.samples.area[i];
-  const auto is_inner = [&](std::uint32_t i) { return behind[parts.part[i]] > 0.5 * parts.area[parts.part[i]]; };
-  SampleSet samples = keep_samples(surface.samples, is_inner, context);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples.edge[i].bits ^= 1;
-    samples.normal[i] = pack_normal(-unpack_normal(samples.normal[i]));
-  }
-  return samples;
-}
 
 /// Fills in kept.shell and kept.shell_cut as far as asked for.
 void keep_shell(const NarrowBand& band, const Box& bounds, Artifacts& kept) {

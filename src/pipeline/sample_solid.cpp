@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "band/enclosed.h"
 #include "evenmesh/error.h"
 #include "grid/density.h"
 #include "grid/surface_components.h"
@@ -12,6 +13,8 @@ namespace {
 constexpr int attempts = 4;            ///< to find the resolution of a surface without a size of its own
 constexpr double fractal_alpha = 150;  ///< samples per seed there
 constexpr std::size_t min_resolution = 24;
+constexpr double gap_per_edge = 0.9;     ///< width of gaps that are filled with the cavities
+constexpr double worth_filling = 0.05;   ///< share of the area that gaps hide
 constexpr double max_unresolved = 0.02;  ///< share of crossings: rays that graze a curved surface lose up to 1 %
 
 class SolidSampling {
@@ -37,12 +40,37 @@ class SolidSampling {
   void sample() {
     const Grid grid = make_grid(sampler_.bounds(), result_.plan.grid.resolution);
     result_.samples = timer_.stage("sample", 0.1, [&] { return sampler_.sample(grid, context_); });
+    result_.filled_cavities = 0;
     if (!options_.fill_cavities) return;
     timer_.stage("sample", 0, [&] {
-      RemainingSurface rest = fill_cavities(std::move(result_.samples), context_);
-      result_.samples = std::move(rest.samples);
-      result_.filled_cavities = rest.dropped;
+      fill();
+      if (fill_gaps()) fill();
     });
+  }
+
+  void fill() {
+    RemainingSurface rest = fill_cavities(std::move(result_.samples), context_);
+    result_.samples = std::move(rest.samples);
+    result_.filled_cavities += rest.dropped;
+  }
+
+  /// An edge cannot go where the outside is narrower: much surface there is not worth its vertices. Little is left to
+  /// the topology's repair.
+  bool fill_gaps() {
+    SampleSet& samples = result_.samples;
+    if (samples.size() == 0) return false;
+    const double h = samples.grid.spacing, area = samples.total_area;
+    if (gap_ == 0) gap_ = gap_per_edge * edge_length_of(area, static_cast<double>(result_.plan.vertices));
+    const auto reach = static_cast<unsigned>(std::clamp(std::round(0.5 * gap_ / h), 1.0, 10.0));
+    SampleSet filled = narrow_gaps_filled(samples, reach, context_);
+    result_.hidden_area = std::max(0.0, area - filled.total_area);
+    if (result_.hidden_area < worth_filling * area) {
+      result_.hidden_area = 0;
+      return false;
+    }
+    result_.gap = 2 * reach * h;
+    samples = std::move(filled);
+    return true;
   }
 
   /// Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
@@ -87,6 +115,7 @@ class SolidSampling {
   StageTimer& timer_;
   ExecutionContext& context_;
   Sampling result_;
+  double gap_ = 0;  // width of the gaps to fill, model units; 0: not known yet
 };
 
 void add_findings(const Sampler& sampler, Sampling& sampling) {
@@ -94,6 +123,11 @@ void add_findings(const Sampler& sampler, Sampling& sampling) {
   const auto say = [&](FindingCode code, std::vector<std::pair<std::string, FindingValue>> values = {}) {
     sampling.findings.push_back(make_finding(code, std::move(values)));
   };
+  if (const std::size_t count = sampling.filled_cavities; count > 0)
+    say(FindingCode::cavities_filled, {{"count", static_cast<double>(count)},
+                                       {"surfaces", std::string(count == 1 ? "surface" : "surfaces")},
+                                       {"them", std::string(count == 1 ? "it" : "them")}});
+  if (sampling.hidden_area > 0) say(FindingCode::gaps_filled, {{"gap", sampling.gap}, {"area", sampling.hidden_area}});
   if (samples.disagreements > 0)
     say(FindingCode::inside_by_vote, {{"count", static_cast<double>(samples.disagreements)}});
   if (const std::size_t non_finite = sampler.non_finite(); non_finite > 0)

@@ -31,6 +31,7 @@ struct Sampling {
   std::size_t sampled = 0;                        ///< samples, before the topology was repaired
   std::size_t disagreements = 0, unresolved = 0;  ///< of those samples, see SampleSet
   std::size_t filled_cavities = 0;
+  double gap = 0, hidden_area = 0;  ///< gaps narrower than that were filled; the surface that went with them
   std::size_t dropped_components = 0;
   std::size_t sites = 0, band_voxels = 0;  ///< of the shell
   std::size_t merges = 0;                  ///< gaps between sheets that hide surface
