@@ -40,6 +40,7 @@ enum class FindingCode {
   wrap_distance,
   sheet_topology_kept,
   features_not_followed,
+  short_features_left_out,
   features_released,
   small_components_dropped,
   balls_united,

@@ -68,7 +68,8 @@ SampleSet narrow_gaps_filled(const SampleSet& solid, unsigned reach, ExecutionCo
   const SiteVoxels sites = voxels_of(solid, grid, context);
   const BandSurface grown = band_surface(build_narrow_band(sites, reach, context), sites, context);
   const SiteVoxels border = outer_border(grown, outer_sheets(grown, context), grid, context);
-  SampleSet core = enclosed_by(band_surface(build_narrow_band(border, 2 * reach, context), border, context), context);
+  SampleSet core =
+      enclosed_by(band_surface(build_narrow_band(border, reach + (reach + 1) / 2, context), border, context), context);
   core.grid = solid.grid;
   core.source.clear();
   for (SampleBlock& block : core.blocks)

@@ -65,6 +65,9 @@ constexpr std::array kinds{
          "sheets have no inside that balls could be added to: their topology was kept"},
     Kind{FindingCode::features_not_followed, warning, "features-not-followed",
          "none of the {count:.0f} sharp edges found is kept: {reason}"},
+    Kind{FindingCode::short_features_left_out, warning, "short-features-left-out",
+         "{count:.0f} sharp edges shorter than {length:.3g} are not kept: they would take more than a fifth of the "
+         "vertices; ask for more"},
     Kind{FindingCode::features_released, warning, "features-released",
          "{count:.0f} sharp edges were given up where they stood in the way of the topology: ask for more vertices, or "
          "take --topology keep"},

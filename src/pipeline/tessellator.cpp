@@ -13,6 +13,7 @@
 #include "cvt/starts.h"
 #include "evenmesh/error.h"
 #include "features/crowding.h"
+#include "features/long_curves.h"
 #include "grid/surface_components.h"
 
 namespace evenmesh {
@@ -21,7 +22,8 @@ namespace {
 constexpr std::size_t relaxing_evaluations = 5;
 constexpr double sheet_effort = 1.7;  ///< a small part of the time there: Q 0.005 higher for 10 % more of it
 
-RelaxOptions relax_options(const MeshOptions& options) {
+/// @param rugged  what is left of filled gaps takes more effort to even out
+RelaxOptions relax_options(const MeshOptions& options, bool rugged) {
   RelaxOptions relax;
   relax.start = options.start == Start::random       ? SeedStart::random
                 : options.start == Start::blue_noise ? SeedStart::blue_noise
@@ -29,8 +31,9 @@ RelaxOptions relax_options(const MeshOptions& options) {
   relax.lloyd = options.optimizer == Optimizer::lloyd;
   relax.tolerance = options.tolerance;
   relax.seed = options.seed;
-  relax.effort = options.quality == Quality::fast ? 0.5 : options.quality == Quality::high ? 3 : 1;
-  relax.annealing_rounds = options.quality == Quality::high ? 12 : 0;
+  const bool high = options.quality == Quality::high || (rugged && options.quality == Quality::normal);
+  relax.effort = options.quality == Quality::fast ? 0.5 : high ? 3 : 1;
+  relax.annealing_rounds = high ? 12 : 0;
   relax.evaluations = options.iterations;
   return relax;
 }
@@ -76,6 +79,7 @@ void Tessellator::find_features() {
   });
   context.log(fmt::format("features: {} curves, {} corners, {} seeds", result.features.curves.size(),
                           result.features.corners.size(), fixed()));
+  if (result.sampling.hidden_area > 0) keep_long_features(edge);
   const std::string reason = reason_against(result.features, fixed(), result.sampling.samples, wanted());
   if (reason.empty()) return;
   if (const std::size_t count = result.features.curves.size(); count > 0)
@@ -85,9 +89,21 @@ void Tessellator::find_features() {
   result.feature_seeds = {};
 }
 
+void Tessellator::keep_long_features(double edge) {
+  constexpr double most = 0.2;   // share of the vertices
+  constexpr double length = 50;  // edges
+  if (static_cast<double>(fixed()) <= most * static_cast<double>(wanted())) return;
+  const std::size_t all = result.features.curves.size();
+  result.features = long_curves(result.features, length * edge);
+  result.feature_seeds = place_feature_seeds(result.features, edge);
+  result.sampling.findings.push_back(
+      make_finding(FindingCode::short_features_left_out,
+                   {{"count", static_cast<double>(all - result.features.curves.size())}, {"length", length * edge}}));
+}
+
 void Tessellator::relax_all(std::size_t count) {
   timer.stage("relax", closed() ? 0.6 : 0.5, [&] {
-    RelaxOptions relax = relax_options(options);
+    RelaxOptions relax = relax_options(options, result.sampling.hidden_area > 0);
     if (!closed()) relax.effort *= sheet_effort;
     if (fixed() > 0)
       relax.fixed = [&](std::size_t seeds) {
