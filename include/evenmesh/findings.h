@@ -34,7 +34,7 @@ enum class FindingCode {
   closed_by_bounds,
   crossings_unresolved,
   cavities_filled,
-  gaps_filled,
+  narrow_gaps_filled,
   sheets_merged,
   sheets_cut,
   wrap_distance,

@@ -51,7 +51,7 @@ constexpr std::array kinds{
          "-r {finer:.0f} resolves twice as much"},
     Kind{FindingCode::cavities_filled, note, "cavities-filled",
          "{count:.0f} {surfaces} within the solid, not reached from outside: filled; --hull all keeps {them}"},
-    Kind{FindingCode::gaps_filled, warning, "gaps-filled",
+    Kind{FindingCode::narrow_gaps_filled, warning, "narrow-gaps-filled",
          "gaps narrower than {gap:.3g}, where edges are longer, were filled with the surface in them, of area "
          "{area:.4g}: ask for more vertices, or take --hull all"},
     Kind{FindingCode::sheets_merged, warning, "sheets-merged",
@@ -91,8 +91,8 @@ constexpr std::array kinds{
          "the mesh is not a closed two-manifold: {boundary:.0f} boundary and {edges:.0f} non-manifold edges; ask for "
          "more vertices"},
     Kind{FindingCode::self_intersections, broken, "self-intersections",
-         "{count:.0f} pairs of triangles intersect each other; ask for more vertices"},
-    Kind{FindingCode::no_area, broken, "no-area", "{count:.0f} triangles have no area; ask for more vertices"},
+         "{count:.0f} pairs of triangles intersect each other{where}; ask for more vertices"},
+    Kind{FindingCode::no_area, broken, "no-area", "{count:.0f} triangles have no area{where}; ask for more vertices"},
 };
 
 const Kind& kind_of(FindingCode code) {

@@ -127,7 +127,8 @@ void add_findings(const Sampler& sampler, Sampling& sampling) {
     say(FindingCode::cavities_filled, {{"count", static_cast<double>(count)},
                                        {"surfaces", std::string(count == 1 ? "surface" : "surfaces")},
                                        {"them", std::string(count == 1 ? "it" : "them")}});
-  if (sampling.hidden_area > 0) say(FindingCode::gaps_filled, {{"gap", sampling.gap}, {"area", sampling.hidden_area}});
+  if (sampling.hidden_area > 0)
+    say(FindingCode::narrow_gaps_filled, {{"gap", sampling.gap}, {"area", sampling.hidden_area}});
   if (samples.disagreements > 0)
     say(FindingCode::inside_by_vote, {{"count", static_cast<double>(samples.disagreements)}});
   if (const std::size_t non_finite = sampler.non_finite(); non_finite > 0)
