@@ -112,7 +112,8 @@ Mesh packed(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles) 
   return mesh;
 }
 
-Leaks find_leaks(const Mesh& mesh, const std::vector<std::uint32_t>& patch, ExecutionContext& context) {
+Leaks find_leaks(const Mesh& mesh, const std::vector<std::uint32_t>& patch, const AskRays& solidity,
+                 ExecutionContext& context) {
   Leaks leaks;
   leaks.leaking.assign(mesh.triangles.size(), 0);
   const OpenEdges open = open_edges(mesh);
@@ -127,7 +128,7 @@ Leaks find_leaks(const Mesh& mesh, const std::vector<std::uint32_t>& patch, Exec
     const Mesh alone = packed(mesh.vertices, std::move(triangles));
     std::vector<char> filled(own.fills.size(), 1);
     if (!has_small_holes_only(mesh, own, alone, context)) {
-      if (!asked || solidity(alone, context) < min_solidity) continue;
+      if (!asked || solidity(alone) < min_solidity) continue;
       filled = lie_half_way(mesh.vertices, own.fills);
     }
     const bool closed = own.rim_edges == own.open_edges && std::count(filled.begin(), filled.end(), 0) == 0;

@@ -5,7 +5,6 @@
 #include "core/parallel.h"
 #include "evenmesh/repair.h"
 #include "geometry/clean.h"
-#include "geometry/leaks.h"
 #include "geometry/mesh_bodies.h"
 #include "geometry/shared_edges.h"
 #include "geometry/triangle.h"
@@ -96,7 +95,8 @@ void sort_largest_first(std::vector<MeshPiece>& pieces) {
 
 class Splitter {
  public:
-  Splitter(const Mesh& mesh, ExecutionContext& context) : context_(context) {
+  Splitter(const Mesh& mesh, const AskRays& solidity, ExecutionContext& context)
+      : solidity_(solidity), context_(context) {
     MeshDefects defects;
     CleanMesh clean = evenmesh::clean(mesh, defects);
     turned_triangles_ = defects.turned_triangles;
@@ -128,7 +128,7 @@ class Splitter {
 
  private:
   void fill_holes() {
-    Leaks leaks = find_leaks(mesh_, patch_, context_);
+    Leaks leaks = find_leaks(mesh_, patch_, solidity_, context_);
     leaking_ = std::move(leaks.leaking);
     if (leaks.fills.empty()) return;
     for (const auto& fill : leaks.fills) {
@@ -257,6 +257,7 @@ class Splitter {
     }
   }
 
+  const AskRays& solidity_;
   ExecutionContext& context_;
   Mesh mesh_;                         // what may bound a solid
   std::vector<std::uint32_t> patch_;  // of its triangles
@@ -269,13 +270,13 @@ class Splitter {
 
 }  // namespace
 
-MeshParts parts_of(const Mesh& mesh, bool turn, ExecutionContext& context) {
+MeshParts parts_of(const Mesh& mesh, bool turn, const AskRays& solidity, ExecutionContext& context) {
   if (is_in_order(mesh, context)) {
     MeshParts whole;
     whole.as_given = true;
     return whole;
   }
-  return Splitter(mesh, context).result(turn);
+  return Splitter(mesh, solidity, context).result(turn);
 }
 
 }  // namespace evenmesh

@@ -6,6 +6,7 @@
 
 #include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
+#include "geometry/leaks.h"
 
 namespace evenmesh {
 
@@ -35,6 +36,6 @@ struct MeshParts {
 /// @param turn  false: bodies stay as they face
 /// Guarantee: no coordinate changes. Cost: about 0.1 µs per triangle where all is in order, 3 µs otherwise.
 /// @throws InvalidInput  a triangle's index is out of range
-MeshParts parts_of(const Mesh& mesh, bool turn, ExecutionContext& context);
+MeshParts parts_of(const Mesh& mesh, bool turn, const AskRays& solidity, ExecutionContext& context);
 
 }  // namespace evenmesh

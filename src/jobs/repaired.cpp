@@ -49,7 +49,8 @@ Repaired repair(const Shape& shape, Hull asked, const MeshOptions& options, Exec
   Mesh mesh = cleaned(*shape.mesh(), r.defects);
   if (mesh.triangles.empty()) throw UnusableInput(shape.name + " has no triangle with an area");
   context.throw_if_cancelled();
-  const MeshParts parts = asked == Hull::wrap ? MeshParts{} : parts_of(mesh, false, context);
+  const auto ask = [&](const Mesh& m) { return solidity(m, context); };
+  const MeshParts parts = asked == Hull::wrap ? MeshParts{} : parts_of(mesh, false, ask, context);
   context.throw_if_cancelled();
   const Hull hull = decide(asked, mesh, parts, r, context);
   context.throw_if_cancelled();

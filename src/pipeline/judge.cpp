@@ -4,6 +4,7 @@
 #include <memory>
 #include <numeric>
 
+#include "evenmesh/repair.h"
 #include "evenmesh/solid.h"
 #include "geometry/triangle.h"
 
@@ -27,7 +28,8 @@ void append(std::vector<MeshPiece>& to, const std::vector<MeshPiece>& more) {
 /// @param sheets_decide  a mesh with more sheets than closed parts stays as it is
 Shape judged_mesh(const Shape& shape, bool sheets_decide, Judgement& judgement, ExecutionContext& context) {
   const Mesh& mesh = *shape.mesh();
-  MeshParts parts = parts_of(mesh, shape.winding == Winding::any, context);
+  MeshParts parts = parts_of(
+      mesh, shape.winding == Winding::any, [&](const Mesh& m) { return solidity(m, context); }, context);
   if (parts.as_given || parts.solid.triangles.empty()) return shape;
   if (sheets_decide && area_of(parts.sheets) > area_of(parts.solid)) return shape;
   judgement.turned_triangles += parts.turned_triangles;
