@@ -53,7 +53,7 @@ constexpr std::array kinds{
          "{count:.0f} {surfaces} within the solid, not reached from outside: filled; --hull all keeps {them}"},
     Kind{FindingCode::narrow_gaps_filled, warning, "narrow-gaps-filled",
          "gaps narrower than {gap:.3g}, where edges are longer, were filled with the surface in them, of area "
-         "{area:.4g}: ask for more vertices, or take --hull all"},
+         "{area:.4g}: ask for more vertices{cure}"},
     Kind{FindingCode::sheets_merged, warning, "sheets-merged",
          "sheets that come within {width:.3g} of each other merge in {count:.0f} places, first at ({x:.4g}, {y:.4g}, "
          "{z:.4g}): {cure}"},

@@ -52,10 +52,10 @@ class BandSampling {
 
   /// Samples, and once more on a finer grid where so little of the input counts that seeds would starve.
   Sampling result(Plan plan) {
-    std::vector<Finding> findings = std::move(plan.findings);
+    const std::vector<Finding> findings = std::move(plan.findings);
     const double samples = once(plan), wanted = wanted_alpha * static_cast<double>(plan.vertices);
     if (plan.refinable && samples <= 0.6 * wanted) once(finer(plan, std::sqrt(wanted / std::max(1.0, samples))));
-    result_.findings = std::move(findings);
+    result_.findings.insert(result_.findings.begin(), findings.begin(), findings.end());
     limit_vertices();
     if (result_.plan.route == Route::sheets)
       say_what_sheets_lost();
@@ -133,6 +133,7 @@ class BandSampling {
       return enclosed_by(band_surface(eroded, border, context_), context_);
     });
     if (result_.samples.size() == 0) throw UnusableInput("the surface is too small for its grid: raise the resolution");
+    timer_.stage("shell", 0, [&] { fill_narrow_gaps(result_, context_); });
   }
 
   /// Counts the gaps that hide surface; elsewhere it is still seen from its other side.

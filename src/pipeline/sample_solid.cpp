@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "band/enclosed.h"
 #include "evenmesh/error.h"
 #include "grid/density.h"
 #include "grid/surface_components.h"
@@ -13,8 +12,6 @@ namespace {
 constexpr int attempts = 4;            ///< to find the resolution of a surface without a size of its own
 constexpr double fractal_alpha = 150;  ///< samples per seed there
 constexpr std::size_t min_resolution = 24;
-constexpr double gap_per_edge = 0.9;     ///< width of gaps that are filled with the cavities
-constexpr double worth_filling = 0.05;   ///< share of the area that gaps hide
 constexpr double max_unresolved = 0.02;  ///< share of crossings: rays that graze a curved surface lose up to 1 %
 
 class SolidSampling {
@@ -44,7 +41,7 @@ class SolidSampling {
     if (!options_.fill_cavities) return;
     timer_.stage("sample", 0, [&] {
       fill();
-      if (fill_gaps()) fill();
+      if (fill_narrow_gaps(result_, context_)) fill();
     });
   }
 
@@ -52,25 +49,6 @@ class SolidSampling {
     RemainingSurface rest = fill_cavities(std::move(result_.samples), context_);
     result_.samples = std::move(rest.samples);
     result_.filled_cavities += rest.dropped;
-  }
-
-  /// An edge cannot go where the outside is narrower: much surface there is not worth its vertices. Little is left to
-  /// the topology's repair.
-  bool fill_gaps() {
-    SampleSet& samples = result_.samples;
-    if (samples.size() == 0) return false;
-    const double h = samples.grid.spacing, area = samples.total_area;
-    if (gap_ == 0) gap_ = gap_per_edge * edge_length_of(area, static_cast<double>(result_.plan.vertices));
-    const auto reach = static_cast<unsigned>(std::clamp(std::round(0.5 * gap_ / h), 1.0, 10.0));
-    SampleSet filled = narrow_gaps_filled(samples, reach, context_);
-    result_.hidden_area = std::max(0.0, area - filled.total_area);
-    if (result_.hidden_area < worth_filling * area) {
-      result_.hidden_area = 0;
-      return false;
-    }
-    result_.gap = 2 * reach * h;
-    samples = std::move(filled);
-    return true;
   }
 
   /// Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
@@ -115,7 +93,6 @@ class SolidSampling {
   StageTimer& timer_;
   ExecutionContext& context_;
   Sampling result_;
-  double gap_ = 0;  // width of the gaps to fill, model units; 0: not known yet
 };
 
 void add_findings(const Sampler& sampler, Sampling& sampling) {
@@ -127,8 +104,6 @@ void add_findings(const Sampler& sampler, Sampling& sampling) {
     say(FindingCode::cavities_filled, {{"count", static_cast<double>(count)},
                                        {"surfaces", std::string(count == 1 ? "surface" : "surfaces")},
                                        {"them", std::string(count == 1 ? "it" : "them")}});
-  if (sampling.hidden_area > 0)
-    say(FindingCode::narrow_gaps_filled, {{"gap", sampling.gap}, {"area", sampling.hidden_area}});
   if (samples.disagreements > 0)
     say(FindingCode::inside_by_vote, {{"count", static_cast<double>(samples.disagreements)}});
   if (const std::size_t non_finite = sampler.non_finite(); non_finite > 0)
