@@ -58,6 +58,7 @@ Repaired repair(const Shape& shape, Hull asked, const MeshOptions& options, Exec
     r.shape = shape_from_mesh(std::move(mesh), shape.name);
     r.options.wrap = true;
     r.options.method = Method::shell;
+    r.options.fill_cavities = true;
     return r;
   }
   fill(mesh, parts, r);
