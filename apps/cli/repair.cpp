@@ -25,8 +25,13 @@ void tell(const Repaired& r) {
   say("note", summary_of(r.defects));
   if (r.wrapped_sheets)
     say("note", "most of it is sheets without an inside: they are wrapped, one voxel outside (--hull outer: not)");
-  if (r.filled_holes > 0)
-    say("note", fmt::format("{} {} filled", r.filled_holes, r.filled_holes == 1 ? "hole" : "holes"));
+  if (r.filled_holes == 0) return;
+  std::string text = fmt::format("{} {} filled", r.filled_holes, r.filled_holes == 1 ? "hole" : "holes");
+  if (const auto& hole = r.largest_hole)
+    text +=
+        fmt::format(", the largest {:.4g} across at ({:.4g}, {:.4g}, {:.4g}); 'mesh --method shell' keeps holes open",
+                    hole->size, hole->middle.x, hole->middle.y, hole->middle.z);
+  say("note", text);
 }
 
 int run_repair(const RepairArguments& a) {

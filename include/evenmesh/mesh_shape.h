@@ -44,7 +44,9 @@ struct MeshOptions {
                                         ///< 2d are bridged; default 2, for point clouds by their spacing
   /// Sharp edges: where the surface turns by more than this, degrees in (0, 180), the mesh gets an edge. None: off.
   std::optional<double> feature_angle{40};
-  bool fill_cavities = false;         ///< of solids, keep what the outside reaches: their outer hull
+  /// Of solids, keep what the outside reaches: their outer hull. Of these and wraps, fill gaps narrower than 0.9 edges
+  /// where they hide more than 5 % of the surface.
+  bool fill_cavities = false;
   bool wrap = false;                  ///< a closed mesh one voxel around the surface instead, by the shell
   Density density{};                  ///< none: even. Smooth, and at most a hundred times its mean
   std::optional<Box> bounds{};        ///< replaces the shape's own; a surface cut by it is capped

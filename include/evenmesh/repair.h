@@ -10,20 +10,23 @@ namespace evenmesh {
 
 /// What cleaned() did, and what is left to be healed by sampling.
 struct MeshDefects {
-  std::size_t welded_vertices = 0;       ///< vertices at the place of another one, joined with it
-  std::size_t degenerate_triangles = 0;  ///< with two corners in one place, or without area: left out
-  std::size_t repeated_triangles = 0;    ///< with the same corners as another one: left out
-  std::size_t turned_triangles = 0;      ///< that faced other ways than most around them
-  std::size_t non_manifold_edges = 0;    ///< with three triangles or more: kept
-  std::size_t boundary_edges = 0;        ///< with one triangle: kept
-  std::size_t patches = 0;               ///< connected across edges of two triangles
+  std::size_t welded_vertices = 0;  ///< vertices at the place of another one, joined with it
+  std::size_t degenerate_triangles =
+      0;  ///< with two corners in one place, or without area and joining no others: left out
+  std::size_t repeated_triangles = 0;  ///< with the same corners as another one: left out
+  std::size_t wall_triangles = 0;      ///< of walls that two touching bodies share: left out
+  std::size_t turned_triangles = 0;    ///< that faced other ways than most around them
+  std::size_t non_manifold_edges = 0;  ///< with three triangles or more: kept
+  std::size_t boundary_edges = 0;      ///< with one triangle: kept
+  std::size_t patches = 0;             ///< connected across edges of two triangles
 };
 
 /// The mesh with one vertex for equal points, without degenerate and repeated triangles, each patch facing one way:
 /// that of most of its triangles, by area.
 ///
-/// A patch that cannot face one way (a Möbius band) is turned as far as possible.
-/// Guarantee: no coordinate changes; unused vertices are left out. Cost: about 1 µs per triangle.
+/// A patch that cannot face one way (a Möbius band) is turned as far as possible. Where two bodies touch in triangles
+/// with the same corners these go, so that the bodies become one. Guarantee: no coordinate changes; unused vertices are
+/// left out. Cost: about 1 µs per triangle.
 /// @throws InvalidInput  a triangle's index is out of range
 Mesh cleaned(const Mesh& mesh, MeshDefects& defects);
 

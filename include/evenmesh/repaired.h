@@ -29,6 +29,11 @@ struct Repaired {
   std::optional<double> solidity;  ///< of the cleaned mesh, [0, 1], where Hull::automatic asked for it (repair.h)
   bool wrapped_sheets = false;     ///< Hull::automatic found sheets without an inside: solidity below 0.6
   std::size_t filled_holes = 0;    ///< by triangles; wraps and gaps too wide are left to the sampling
+  struct Hole {
+    Vec3 middle;
+    double size = 0;  ///< diagonal of its box, model units
+  };
+  std::optional<Hole> largest_hole{};  ///< of those that are small beside the surface
 };
 
 /// Welds, leaves out what is degenerate or repeated, turns patches one way (cleaned()), decides on the hull, and fills

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "evenmesh/error.h"
 #include "evenmesh/repair.h"
-#include "geometry/half_edges.h"
+#include "geometry/hole_fills.h"
+#include "geometry/shared_edges.h"
 #include "geometry/triangle.h"
+#include "geometry/winding_number.h"
 
 namespace evenmesh {
 namespace {
@@ -21,29 +22,46 @@ constexpr double max_astray = 0.25;             ///< of the winding number half 
 
 constexpr std::uint32_t none = 0xffffffffu;
 
-/// Closed walks along the boundary, each vertex once, so that a triangle for an edge faces as its neighbour does.
+/// Boundary edges by where they start, directed so that a triangle for an edge faces as its neighbour does.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary_edges(const Mesh& mesh) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary;
+  for_each_edge(edge_uses(mesh.triangles), [&](std::span<const EdgeUse> edge) {
+    if (edge.size() != 1) return;
+    const auto& use = edge[0];
+    boundary.push_back(use.up ? std::pair(use.high, use.low) : std::pair(use.low, use.high));
+  });
+  std::sort(boundary.begin(), boundary.end());
+  return boundary;
+}
+
+/// Closed walks along the boundary. A walk that comes back to a vertex ends there, so each has every vertex once.
 std::vector<std::vector<std::uint32_t>> boundary_loops(const Mesh& mesh) {
-  const HalfEdges edges(mesh.triangles, mesh.vertices.size());
-  std::vector<std::uint32_t> next(mesh.vertices.size(), none);
-  std::vector<char> leaving(mesh.vertices.size(), 0), coming(mesh.vertices.size(), 0);
-  const auto count = [](char& c) { c = static_cast<char>(std::min(c + 1, 2)); };
-  for (std::size_t h = 0; h < 3 * mesh.triangles.size(); ++h) {
-    if (edges.opposite(h) != HalfEdges::none) continue;
-    const Triangle& t = mesh.triangles[h / 3];
-    const std::uint32_t from = t[(h + 1) % 3], to = t[h % 3];
-    next[from] = to;
-    count(leaving[from]);
-    count(coming[to]);
-  }
+  const auto boundary = boundary_edges(mesh);
+  std::vector<char> used(boundary.size(), 0);
+  std::vector<std::uint32_t> place(mesh.vertices.size(), none);  // in the walk
+  const auto leave = [&](std::uint32_t v) {
+    auto edge = std::lower_bound(boundary.begin(), boundary.end(), std::pair(v, std::uint32_t{0}));
+    while (edge != boundary.end() && edge->first == v && used[static_cast<std::size_t>(edge - boundary.begin())])
+      ++edge;
+    if (edge == boundary.end() || edge->first != v) return none;
+    used[static_cast<std::size_t>(edge - boundary.begin())] = 1;
+    return edge->second;
+  };
   std::vector<std::vector<std::uint32_t>> loops;
-  std::vector<char> seen(mesh.vertices.size(), 0);
-  for (std::uint32_t first = 0; first < next.size(); ++first) {
-    std::vector<std::uint32_t> loop;
-    for (std::uint32_t v = first; v != none && !seen[v] && leaving[v] == 1 && coming[v] == 1; v = next[v]) {
-      seen[v] = 1;
-      loop.push_back(v);
+  for (std::size_t first = 0; first < boundary.size(); ++first) {
+    if (used[first]) continue;
+    std::vector<std::uint32_t> walk;
+    for (std::uint32_t v = boundary[first].first; v != none; v = leave(v)) {
+      if (place[v] != none) {
+        std::vector<std::uint32_t> loop(walk.begin() + place[v], walk.end());
+        for (const std::uint32_t w : loop) place[w] = none;
+        walk.resize(walk.size() - loop.size());
+        if (loop.size() >= 3 && loop.size() <= longest_loop) loops.push_back(std::move(loop));
+      }
+      place[v] = static_cast<std::uint32_t>(walk.size());
+      walk.push_back(v);
     }
-    if (loop.size() >= 3 && loop.size() <= longest_loop && next[loop.back()] == first) loops.push_back(std::move(loop));
+    for (const std::uint32_t w : walk) place[w] = none;
   }
   return loops;
 }
@@ -79,48 +97,48 @@ std::vector<Triangle> min_area_fill(const Mesh& mesh, const std::vector<std::uin
   return fill;
 }
 
-/// Solid angle of a triangle seen from p, as a share of all directions; positive where p is behind it.
-double share_of_view(const Mesh& mesh, const Triangle& t, const Vec3& p) {
-  const Vec3 a = mesh.vertices[t[0]] - p, b = mesh.vertices[t[1]] - p, c = mesh.vertices[t[2]] - p;
-  const double la = norm(a), lb = norm(b), lc = norm(c);
-  // van Oosterom, Strackee, The solid angle of a plane triangle, IEEE Trans. Biomed. Eng. 30, 1983.
-  return std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb) /
-         (2 * std::numbers::pi);
+}  // namespace
+
+std::vector<std::vector<Triangle>> hole_fills(const Mesh& mesh) {
+  std::vector<std::vector<Triangle>> fills;
+  for (const auto& loop : boundary_loops(mesh)) fills.push_back(min_area_fill(mesh, loop));
+  return fills;
 }
 
-}  // namespace
+std::vector<char> lie_half_way(const std::vector<Vec3>& vertices, std::span<const std::vector<Triangle>> fills) {
+  std::size_t triangles = 0;
+  for (const auto& fill : fills) triangles += fill.size();
+  std::vector<char> half_way(fills.size(), 0);
+  if (fills.size() * triangles > max_views) return half_way;
+  // With all holes filled the winding number on a fill, between its two sides, is half an odd number. Without, it
+  // differs from that by what is seen of the fills.
+  const auto area = [&](const Triangle& t) { return triangle_area(vertices[t[0]], vertices[t[1]], vertices[t[2]]); };
+  for (std::size_t i = 0; i < fills.size(); ++i) {
+    const Triangle& largest = *std::max_element(fills[i].begin(), fills[i].end(),
+                                                [&](const auto& s, const auto& t) { return area(s) < area(t); });
+    const Vec3 p = (vertices[largest[0]] + vertices[largest[1]] + vertices[largest[2]]) / 3;
+    double seen = 0;
+    for (const auto& other : fills)
+      for (const Triangle& t : other)
+        if (&t != &largest) seen += share_of_view(vertices[t[0]], vertices[t[1]], vertices[t[2]], p);
+    half_way[i] = std::abs(seen) < max_astray;
+  }
+  return half_way;
+}
 
 Mesh holes_filled(const Mesh& mesh, std::size_t& filled) {
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t v : t)
       if (v >= mesh.vertices.size()) throw InvalidInput("a triangle uses a vertex that does not exist");
-  std::vector<std::vector<Triangle>> fills;
-  for (const auto& loop : boundary_loops(mesh)) fills.push_back(min_area_fill(mesh, loop));
-  std::size_t triangles = 0;
-  for (const auto& fill : fills) triangles += fill.size();
-  filled = 0;
-  if (fills.size() * triangles > max_views) return mesh;
-  // With all holes filled the winding number on a fill, between its two sides, is half an odd number. Without, it
-  // differs from that by what is seen of the fills.
-  const auto is_half_way = [&](const std::vector<Triangle>& fill) {
-    const auto area = [&](const Triangle& t) {
-      return triangle_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    };
-    const Triangle& largest =
-        *std::max_element(fill.begin(), fill.end(), [&](const auto& s, const auto& t) { return area(s) < area(t); });
-    const Vec3 p = (mesh.vertices[largest[0]] + mesh.vertices[largest[1]] + mesh.vertices[largest[2]]) / 3;
-    double seen = 0;
-    for (const auto& other : fills)
-      for (const Triangle& t : other)
-        if (&t != &largest) seen += share_of_view(mesh, t, p);
-    return std::abs(seen) < max_astray;
-  };
+  const std::vector<std::vector<Triangle>> fills = hole_fills(mesh);
+  const std::vector<char> half_way = lie_half_way(mesh.vertices, fills);
   Mesh result = mesh;
-  for (const auto& fill : fills)
-    if (is_half_way(fill)) {
-      result.triangles.insert(result.triangles.end(), fill.begin(), fill.end());
-      ++filled;
-    }
+  filled = 0;
+  for (std::size_t i = 0; i < fills.size(); ++i) {
+    if (!half_way[i]) continue;
+    result.triangles.insert(result.triangles.end(), fills[i].begin(), fills[i].end());
+    ++filled;
+  }
   return result;
 }
 

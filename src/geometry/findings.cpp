@@ -43,6 +43,20 @@ constexpr std::array kinds{
         FindingCode::one_sided, warning, "one-sided",
         "{count:.0f} triangles of the input form a surface with one side only, as a Klein bottle or a Möbius strip: it "
         "has no inside, and no mesh can face one way on it, so {what}"},
+    Kind{FindingCode::triangles_turned, note, "triangles-turned",
+         "{count:.0f} triangles that faced other ways than those around them were turned"},
+    Kind{FindingCode::holes_filled, warning, "holes-filled",
+         "the input is not closed: {count:.0f} {holes} filled, the largest {size:.4g} across at ({x:.4g}, {y:.4g}, "
+         "{z:.4g}); --method shell keeps them open"},
+    Kind{FindingCode::parts_turned, warning, "parts-turned",
+         "{count:.0f} closed {parts} inside out beside others and turned, the largest {size:.4g} across at ({x:.4g}, "
+         "{y:.4g}, {z:.4g}); 'repair --hull oriented' lets such parts take away instead"},
+    Kind{FindingCode::sheets_left_out, broken, "sheets-left-out",
+         "{count:.0f} {sheets} of no thickness beside the solid, of area {area:.4g}: left out, the largest {size:.4g} "
+         "across at ({x:.4g}, {y:.4g}, {z:.4g}); --method shell keeps it"},
+    Kind{FindingCode::flakes_left_out, warning, "flakes-left-out",
+         "{count:.0f} loose triangles or sheets smaller than an edge of the mesh were left out, the largest {size:.4g} "
+         "across at ({x:.4g}, {y:.4g}, {z:.4g})"},
     Kind{FindingCode::inside_by_vote, warning, "inside-by-vote",
          "the input is not closed: inside or outside was settled by vote at {count:.0f} grid points"},
     Kind{FindingCode::not_finite, warning, "not-finite",
@@ -51,6 +65,11 @@ constexpr std::array kinds{
     Kind{FindingCode::crossings_unresolved, warning, "crossings-unresolved",
          "parts thinner than a grid cell ({spacing:.3g}) were lost: {count:.0f} of {all:.0f} crossings were left out; "
          "-r {finer:.0f} resolves twice as much"},
+    Kind{FindingCode::cavities_filled, note, "cavities-filled",
+         "{count:.0f} {surfaces} within the solid, not reached from outside: filled; --hull all keeps {them}"},
+    Kind{FindingCode::narrow_gaps_filled, warning, "narrow-gaps-filled",
+         "gaps narrower than {gap:.3g}, where edges are longer, were filled with the surface in them, of area "
+         "{area:.4g}: ask for more vertices{cure}"},
     Kind{FindingCode::sheets_merged, warning, "sheets-merged",
          "sheets that come within {width:.3g} of each other merge in {count:.0f} places, first at ({x:.4g}, {y:.4g}, "
          "{z:.4g}): {cure}"},
@@ -62,6 +81,9 @@ constexpr std::array kinds{
          "sheets have no inside that balls could be added to: their topology was kept"},
     Kind{FindingCode::features_not_followed, warning, "features-not-followed",
          "none of the {count:.0f} sharp edges found is kept: {reason}"},
+    Kind{FindingCode::short_features_left_out, warning, "short-features-left-out",
+         "{count:.0f} sharp edges shorter than {length:.3g} are not kept: they would take more than a fifth of the "
+         "vertices; ask for more"},
     Kind{FindingCode::features_released, warning, "features-released",
          "{count:.0f} sharp edges were given up where they stood in the way of the topology: ask for more vertices"},
     Kind{FindingCode::small_components_dropped, warning, "small-components-dropped",
@@ -85,8 +107,8 @@ constexpr std::array kinds{
          "the mesh is not a closed two-manifold: {boundary:.0f} boundary and {edges:.0f} non-manifold edges; ask for "
          "more vertices"},
     Kind{FindingCode::self_intersections, broken, "self-intersections",
-         "{count:.0f} pairs of triangles intersect each other; ask for more vertices"},
-    Kind{FindingCode::no_area, broken, "no-area", "{count:.0f} triangles have no area; ask for more vertices"},
+         "{count:.0f} pairs of triangles intersect each other{where}; ask for more vertices"},
+    Kind{FindingCode::no_area, broken, "no-area", "{count:.0f} triangles have no area{where}; ask for more vertices"},
     Kind{FindingCode::coarser_than_curvature, warning, "coarser-than-curvature",
          "{percent:.0f} % of the edges are longer than the radius of curvature there, so that finer detail is lost: "
          "about "

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "pipeline/draft.h"
+#include "pipeline/faults.h"
+#include "pipeline/judge.h"
 #include "pipeline/kernels.h"
 #include "pipeline/plan.h"
 #include "pipeline/refine.h"
@@ -34,16 +36,30 @@ void check(const MeshOptions& o) {
     throw InvalidInput("the bounds are empty: each lower limit must be below its upper one");
 }
 
+/// First of all what became of the input, and places for what is wrong with triangles.
+void complete_findings(const Judgement& judgement, MeshResult& result, ExecutionContext& context) {
+  std::vector<Finding>& findings = result.report.findings;
+  for (Finding& finding : findings)
+    if (const auto place = place_of_fault(result.mesh, finding.code, context))
+      finding = make_finding(finding.code, {finding.values[0], {"where", where(*place)}}, place);
+  const std::vector<Finding> first = judgement.findings(result.report.quality.edge_length_avg);
+  findings.insert(findings.begin(), first.begin(), first.end());
+}
+
 MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
                Artifacts& kept) {
   StageTimer timer(context);
-  const std::unique_ptr<Sampler> sampler = make_sampler(shape, options.bounds, kernels, timer, context);
+  Judgement judgement;
+  const Shape solid = timer.stage("sample", 0, [&] { return judged(shape, options, judgement, context); });
+  const std::unique_ptr<Sampler> sampler = make_sampler(solid, options.bounds, kernels, timer, context);
   Plan plan = make_plan(*sampler, options, timer, context);
   Sampling sampling = sample(*sampler, std::move(plan), options, timer, context, kept);
   const Tessellation cells = tessellate(std::move(sampling), options, kernels, timer, context);
   const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, options, context); });
   Refined refined = refine(draft, cells, *sampler, options, timer, context);
-  return measure(std::move(refined), draft, cells, options, timer, context);
+  MeshResult result = measure(std::move(refined), draft, cells, options, timer, context);
+  complete_findings(judgement, result, context);
+  return result;
 }
 
 }  // namespace

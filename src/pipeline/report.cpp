@@ -117,8 +117,9 @@ class Judge {
 
   void judge_triangles() {
     if (report_.self_intersections > 0)
-      say(FindingCode::self_intersections, {{"count", number(report_.self_intersections)}});
-    if (quality_.degenerate_faces > 0) say(FindingCode::no_area, {{"count", number(quality_.degenerate_faces)}});
+      say(FindingCode::self_intersections, {{"count", number(report_.self_intersections)}, {"where", std::string()}});
+    if (quality_.degenerate_faces > 0)
+      say(FindingCode::no_area, {{"count", number(quality_.degenerate_faces)}, {"where", std::string()}});
   }
 
   const Draft& draft_;

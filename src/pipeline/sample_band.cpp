@@ -3,44 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "band/enclosed.h"
 #include "band/filled_gaps.h"
 #include "band/narrow_band.h"
 #include "evenmesh/error.h"
 #include "grid/blocks.h"
-#include "grid/surface_components.h"
 #include "pipeline/sampling.h"
 
 namespace evenmesh {
 namespace {
-
-/// The sites around the outer border of a shell.
-SiteVoxels outer_border(const BandSurface& surface, const Sheets& outer, const VoxelGrid& grid,
-                        ExecutionContext& context) {
-  const SampleSet& samples = surface.samples;
-  std::vector<Vec3> points, normals;
-  for (const SampleBlock& block : samples.blocks)
-    for (std::uint32_t i = block.begin; i < block.end; ++i) {
-      if (!outer.chosen[i]) continue;
-      points.push_back(samples.block_center(block) + Vec3{samples.x[i], samples.y[i], samples.z[i]});
-      normals.push_back(unpack_normal(samples.normal[i]));
-    }
-  return voxelize_points(points, normals, grid, context);
-}
-
-/// The inner side of a shell, turned around: the border of what the shell encloses.
-SampleSet enclosed_by(const BandSurface& surface, ExecutionContext& context) {
-  const SurfaceComponents parts = surface_components(surface.samples, context);
-  std::vector<double> behind(parts.area.size(), 0);
-  for (std::uint32_t i = 0; i < surface.samples.size(); ++i)
-    if (surface.facing[i] < 0) behind[parts.part[i]] += surface.samples.area[i];
-  const auto is_inner = [&](std::uint32_t i) { return behind[parts.part[i]] > 0.5 * parts.area[parts.part[i]]; };
-  SampleSet samples = keep_samples(surface.samples, is_inner, context);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples.edge[i].bits ^= 1;
-    samples.normal[i] = pack_normal(-unpack_normal(samples.normal[i]));
-  }
-  return samples;
-}
 
 /// Fills in kept.shell and kept.shell_cut as far as asked for.
 void keep_shell(const NarrowBand& band, const Box& bounds, Artifacts& kept) {
@@ -81,10 +52,10 @@ class BandSampling {
 
   /// Samples, and once more on a finer grid where so little of the input counts that seeds would starve.
   Sampling result(Plan plan) {
-    std::vector<Finding> findings = std::move(plan.findings);
+    const std::vector<Finding> findings = std::move(plan.findings);
     const double samples = once(plan), wanted = wanted_alpha * static_cast<double>(plan.vertices);
     if (plan.refinable && samples <= 0.6 * wanted) once(finer(plan, std::sqrt(wanted / std::max(1.0, samples))));
-    result_.findings = std::move(findings);
+    result_.findings.insert(result_.findings.begin(), findings.begin(), findings.end());
     limit_vertices();
     if (result_.plan.route == Route::sheets)
       say_what_sheets_lost();
@@ -169,6 +140,7 @@ class BandSampling {
       return enclosed_by(band_surface(eroded, border, context_), context_);
     });
     if (result_.samples.size() == 0) throw UnusableInput("the surface is too small for its grid: raise the resolution");
+    if (options_.fill_cavities) timer_.stage("shell", 0, [&] { fill_narrow_gaps(result_, context_); });
   }
 
   /// Counts the gaps that hide surface; elsewhere it is still seen from its other side.

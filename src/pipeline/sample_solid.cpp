@@ -39,12 +39,18 @@ class SolidSampling {
   void sample() {
     const Grid grid = make_grid(sampler_.bounds(), result_.plan.grid.resolution);
     result_.samples = timer_.stage("sample", 0.1, [&] { return sampler_.sample(grid, context_); });
+    result_.filled_cavities = 0;
     if (!options_.fill_cavities) return;
     timer_.stage("sample", 0, [&] {
-      RemainingSurface rest = fill_cavities(std::move(result_.samples), context_);
-      result_.samples = std::move(rest.samples);
-      result_.filled_cavities = rest.dropped;
+      fill();
+      if (fill_narrow_gaps(result_, context_)) fill();
     });
+  }
+
+  void fill() {
+    RemainingSurface rest = fill_cavities(std::move(result_.samples), context_);
+    result_.samples = std::move(rest.samples);
+    result_.filled_cavities += rest.dropped;
   }
 
   /// Fractals have more area the closer one looks, and thin parts may have been seen in pieces only.
@@ -108,6 +114,10 @@ void add_findings(const Sampler& sampler, Sampling& sampling, const ExecutionCon
     sampling.findings.push_back(make_finding(code, std::move(values)));
   };
   add_one_sided(sampler, sampling, context);
+  if (const std::size_t count = sampling.filled_cavities; count > 0)
+    say(FindingCode::cavities_filled, {{"count", static_cast<double>(count)},
+                                       {"surfaces", std::string(count == 1 ? "surface" : "surfaces")},
+                                       {"them", std::string(count == 1 ? "it" : "them")}});
   if (samples.disagreements > 0)
     say(FindingCode::inside_by_vote, {{"count", static_cast<double>(samples.disagreements)}});
   if (const std::size_t non_finite = sampler.non_finite(); non_finite > 0)

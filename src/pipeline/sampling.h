@@ -31,6 +31,8 @@ struct Sampling {
   std::size_t sampled = 0;                        ///< samples, before the topology was repaired
   std::size_t disagreements = 0, unresolved = 0;  ///< of those samples, see SampleSet
   std::size_t filled_cavities = 0;
+  double gap = 0;          ///< width of the gaps that edges cannot enter, model units; 0: nobody asked
+  double hidden_area = 0;  ///< of the surface in such gaps that were filled
   std::size_t dropped_components = 0;
   std::size_t sites = 0, band_voxels = 0;  ///< of the shell
   std::size_t merges = 0;                  ///< gaps between sheets that hide surface
@@ -57,6 +59,9 @@ Sampling sample_band(const Sampler& sampler, Plan plan, const MeshOptions& optio
 
 /// Says of a mesh with one side only that the result cannot follow it.
 void add_one_sided(const Sampler& sampler, Sampling& sampling, const ExecutionContext& context);
+/// An edge cannot go where the outside is narrower. Where that hides much surface it is not worth its vertices: fills
+/// such gaps in the samples, and says so. Little is left to the repair of the topology. Returns whether it did.
+bool fill_narrow_gaps(Sampling& sampling, ExecutionContext& context);
 
 /// How many more samples the smallest cells need than the mean ones; weighs the samples, and sets the sizing.
 double apply_density(Sampling& sampling, const Density& density, ExecutionContext& context);

@@ -13,8 +13,7 @@
 #include "cvt/starts.h"
 #include "evenmesh/error.h"
 #include "features/crowding.h"
-#include "grid/blocks.h"
-#include "grid/morton.h"
+#include "features/long_curves.h"
 #include "grid/surface_components.h"
 #include "topology/closing.h"
 
@@ -24,7 +23,8 @@ namespace {
 constexpr std::size_t relaxing_evaluations = 5;
 constexpr double sheet_effort = 1.7;  ///< a small part of the time there: Q 0.005 higher for 10 % more of it
 
-RelaxOptions relax_options(const MeshOptions& options) {
+/// @param rugged  what is left of filled gaps takes more effort to even out
+RelaxOptions relax_options(const MeshOptions& options, bool rugged) {
   RelaxOptions relax;
   relax.start = options.start == Start::random       ? SeedStart::random
                 : options.start == Start::blue_noise ? SeedStart::blue_noise
@@ -32,8 +32,9 @@ RelaxOptions relax_options(const MeshOptions& options) {
   relax.lloyd = options.optimizer == Optimizer::lloyd;
   relax.tolerance = options.tolerance;
   relax.seed = options.seed;
-  relax.effort = options.quality == Quality::fast ? 0.5 : options.quality == Quality::high ? 3 : 1;
-  relax.annealing_rounds = options.quality == Quality::high ? 12 : 0;
+  const bool high = options.quality == Quality::high || (rugged && options.quality == Quality::normal);
+  relax.effort = options.quality == Quality::fast ? 0.5 : high ? 3 : 1;
+  relax.annealing_rounds = high ? 12 : 0;
   relax.evaluations = options.iterations;
   return relax;
 }
@@ -80,6 +81,7 @@ void Tessellator::find_features() {
   });
   context.log(fmt::format("features: {} curves, {} corners, {} seeds", result.features.curves.size(),
                           result.features.corners.size(), fixed()));
+  if (result.sampling.hidden_area > 0) keep_long_features(edge);
   const std::string reason = reason_against(result.features, fixed(), result.sampling.samples, wanted());
   if (reason.empty()) return;
   if (const std::size_t count = result.features.curves.size(); count > 0)
@@ -89,9 +91,21 @@ void Tessellator::find_features() {
   result.feature_seeds = {};
 }
 
+void Tessellator::keep_long_features(double edge) {
+  constexpr double most = 0.2;   // share of the vertices
+  constexpr double length = 50;  // edges
+  if (static_cast<double>(fixed()) <= most * static_cast<double>(wanted())) return;
+  const std::size_t all = result.features.curves.size();
+  result.features = long_curves(result.features, length * edge);
+  result.feature_seeds = place_feature_seeds(result.features, edge);
+  result.sampling.findings.push_back(
+      make_finding(FindingCode::short_features_left_out,
+                   {{"count", static_cast<double>(all - result.features.curves.size())}, {"length", length * edge}}));
+}
+
 void Tessellator::relax_all(std::size_t count) {
   timer.stage("relax", closed() ? 0.6 : 0.5, [&] {
-    RelaxOptions relax = relax_options(options);
+    RelaxOptions relax = relax_options(options, result.sampling.hidden_area > 0);
     if (!closed()) relax.effort *= sheet_effort;
     if (fixed() > 0)
       relax.fixed = [&](std::size_t seeds) {
@@ -294,71 +308,6 @@ void Tessellator::fill_gaps(std::span<const Ball> places) {
     evaluator_.reset();
     ++result.regularization_rounds;
   });
-}
-
-std::unique_ptr<Tessellator> Tessellator::part_around(std::span<const Vec3> points) const {
-  constexpr double free_within = 2, part_within = 4.5;  // edges: between them are two rings of cells that stay complete
-  constexpr double most = 0.8;                          // of the samples
-  const SampleSet& samples = result.sampling.samples;
-  const SizingField& sizing = result.sampling.sizing;
-  // Where edges shall be longer than the mean, the part reaches farther.
-  double longest = edge();
-  for (const Vec3& p : points) longest = std::max(longest, sizing.edge(p));
-  const PointHash index(points, part_within * longest);
-  const auto is_near = [&](const Vec3& p, double edges) {
-    return index.near(p, edges * longest, [](std::uint32_t) { return true; });
-  };
-  std::vector<std::uint32_t> blocks;
-  std::size_t size = 0;
-  for (std::uint32_t b = 0; b < samples.blocks.size(); ++b) {
-    const SampleBlock& block = samples.blocks[b];
-    if (!is_near(samples.block_center(block), part_within)) continue;
-    blocks.push_back(b);
-    size += block.end - block.begin;
-  }
-  if (static_cast<double>(size) > most * static_cast<double>(samples.size())) return nullptr;
-  Sampling sampling;
-  sampling.plan = result.sampling.plan;
-  sampling.sizing = sizing;
-  sampling.samples = part_of(samples, blocks, context);
-  auto part = std::make_unique<Tessellator>(std::move(sampling), options, kernels_, timer, context);
-  part->result.features = result.features;
-  part->result.feature_seeds = result.feature_seeds;
-  part->result.seeds = result.seeds;
-  part->result.seeds.positions.resize(given());
-  part->result.filled = result.filled;
-  for (const Vec3& seed : part->result.seeds.positions) part->frozen_.push_back(!is_near(seed, free_within));
-  return part;
-}
-
-void Tessellator::take_seeds(Tessellator& part) {
-  part.forget_split_cells();
-  result.seeds = part.result.seeds;
-  result.complex.pieces.clear();
-  result.inserted_seeds += part.result.inserted_seeds;
-  part.result.inserted_seeds = 0;
-}
-
-void Tessellator::forget_incomplete_cells() {
-  const SampleSet& samples = result.sampling.samples;
-  const std::vector<std::uint64_t>& left_out = samples.left_out;
-  if (left_out.empty()) return;
-  std::vector<char> incomplete(result.seeds.size(), 0);
-  for (const SampleBlock& block : samples.blocks) {
-    bool at_border = false;
-    for (int n = 0; n < 27 && !at_border; ++n) {
-      const std::array<int, 3> at{block.brick[0] + n % 3 - 1, block.brick[1] + n / 3 % 3 - 1,
-                                  block.brick[2] + n / 9 - 1};
-      at_border = std::min({at[0], at[1], at[2]}) >= 0 &&
-                  std::binary_search(left_out.begin(), left_out.end(),
-                                     morton_code(static_cast<std::uint64_t>(at[0]), static_cast<std::uint64_t>(at[1]),
-                                                 static_cast<std::uint64_t>(at[2])));
-    }
-    if (!at_border) continue;
-    for (std::uint32_t i = block.begin; i < block.end; ++i) incomplete[result.labels[i]] = 1;
-  }
-  for (std::uint32_t& label : result.labels)
-    if (incomplete[label]) label = no_label;
 }
 
 void Tessellator::release_features() {

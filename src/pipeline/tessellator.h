@@ -72,6 +72,7 @@ class Tessellator {
   ExecutionContext& context;
 
  private:
+  void keep_long_features(double edge);
   LabelComplex dual_of(const SampleSet& samples, std::vector<std::uint32_t>& labels) const;
   void connect_solid();
   void connect_sheets();

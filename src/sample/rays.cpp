@@ -5,6 +5,8 @@
 namespace evenmesh {
 namespace {
 
+constexpr float same_place = 0x1p-14f;  ///< cells: vertices are rounded to 2^-16
+
 bool before(const RayHit& a, const RayHit& b) {
   if (a.cell != b.cell) return a.cell < b.cell;
   if (a.t != b.t) return a.t < b.t;
@@ -66,13 +68,16 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
     const bool inside = is_inside();
     const std::uint16_t cell = hits[i].cell;
     std::size_t changes = 0, last = i;
+    float last_change = -1;
     for (; i < hits.size() && hits[i].cell == cell; ++i) {
       const bool was_inside = is_inside();
       winding += hits[i].step;
-      if (is_inside() != was_inside) {
-        ++changes;
-        last = i;
-      }
+      if (is_inside() == was_inside) continue;
+      // Two at once are faces of bodies that touch: nothing lies between.
+      const bool at_once = changes > 0 && hits[i].t - last_change <= same_place;
+      changes = at_once ? changes - 1 : changes + 1;
+      last_change = hits[i].t;
+      last = i;
     }
     // The change that counts is the last one: it is next to the upper grid point's side.
     const bool changed = is_inside() != inside;

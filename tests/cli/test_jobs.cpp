@@ -292,6 +292,20 @@ TEST_F(Jobs, RepairsWhatIsBroken) {
   EXPECT_EQ(run({"repair", "gallery:sphere", "-o", "x.ply"}).status, 2);
 }
 
+TEST_F(Jobs, NamesTheSheetThatItLeavesOut) {
+  write("fin.off",
+        "OFF\n12 14 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n"
+        "0.5 0 0.5\n0.5 1 0.5\n0.5 1 2\n0.5 0 2\n"
+        "3 0 2 3\n3 0 3 1\n3 4 5 7\n3 4 7 6\n3 0 1 5\n3 0 5 4\n3 2 6 7\n3 2 7 3\n3 0 4 6\n3 0 6 2\n"
+        "3 1 3 7\n3 1 7 5\n3 8 9 10\n3 8 10 11\n");
+  for (const char* command : {"mesh", "repair"}) {
+    const Outcome outcome = run({command, "fin.off", "-n", "300", "-o", "r.ply"});
+    EXPECT_EQ(outcome.status, 4) << outcome.err;
+    EXPECT_NE(outcome.err.find("(0.5, 0.5, 1.25); --method shell keeps it"), std::string::npos) << outcome.err;
+    expect_sound(Json::parse(info("r.ply")));
+  }
+}
+
 TEST_F(Jobs, LeavesOutliersOutOnRequest) {
   std::string points;
   for (int i = 0; i < 1000; ++i) {

@@ -46,6 +46,45 @@ TEST(Cleaned, ASoupOfTurnedTrianglesIsAMeshAgain) {
   }
 }
 
+TEST(Cleaned, WallsBetweenBodiesAreNoRepetitions) {
+  const Mesh a = make_box_around({{0, 0, 0}, {1, 1, 1}});
+  MeshDefects defects;
+  const Mesh both = cleaned(merged(a, translated(a, {1, 0, 0})), defects);
+  EXPECT_EQ(both.triangles.size(), 20u);
+  EXPECT_EQ(both.vertices.size(), 12u);
+  EXPECT_EQ(defects.repeated_triangles, 0u);
+  EXPECT_EQ(defects.wall_triangles % 4, 0u);
+  EXPECT_EQ(defects.boundary_edges, 0u);
+  EXPECT_EQ(defects.non_manifold_edges, 0u);
+}
+
+TEST(Cleaned, OfTwoSidesOfASheetOneStays) {
+  Mesh sheet = make_grid_plane(3, 3);
+  const std::size_t given = sheet.triangles.size();
+  for (std::size_t t = 0; t < given; ++t)
+    sheet.triangles.push_back({sheet.triangles[t][0], sheet.triangles[t][2], sheet.triangles[t][1]});
+  MeshDefects defects;
+  EXPECT_EQ(cleaned(sheet, defects).triangles.size(), given);
+  EXPECT_EQ(defects.repeated_triangles, given);
+  EXPECT_EQ(defects.wall_triangles, 0u);
+}
+
+TEST(Cleaned, TrianglesWithoutAreaThatJoinOthersStay) {
+  // The edge of one triangle ends in the middle of another's: a flat one lies between.
+  Mesh mesh = make_box_around({{0, 0, 0}, {1, 1, 1}});
+  const Triangle cut = mesh.triangles.back();
+  mesh.triangles.pop_back();
+  const auto middle = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.push_back(0.5 * (mesh.vertices[cut[0]] + mesh.vertices[cut[1]]));
+  mesh.triangles.insert(mesh.triangles.end(),
+                        {{cut[0], middle, cut[2]}, {middle, cut[1], cut[2]}, {cut[1], middle, cut[0]}});
+  mesh.triangles.back() = {cut[0], cut[1], middle};
+  MeshDefects defects;
+  cleaned(mesh, defects);
+  EXPECT_EQ(defects.degenerate_triangles, 0u);
+  EXPECT_EQ(defects.boundary_edges, 0u);
+}
+
 TEST(Cleaned, LeavesGoodMeshesAlone) {
   MeshDefects defects;
   const Mesh mesh = make_icosphere(2), result = cleaned(mesh, defects);

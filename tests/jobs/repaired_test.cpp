@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -79,6 +80,32 @@ TEST(Repaired, TellsWhatItDid) {
   const MeshResult result = mesh_shape(r.shape, r.options);
   EXPECT_TRUE(result.report.quality.closed());
   EXPECT_TRUE(result.report.quality.two_manifold());
+}
+
+TEST(Repaired, HolesAreFilledBeforeSolidityIsJudged) {
+  Mesh cube = make_box();
+  cube.triangles.pop_back();
+  const Repaired r = repaired(shape_from_mesh(std::move(cube), "cube"));
+  EXPECT_EQ(r.filled_holes, 1u);
+  ASSERT_TRUE(r.largest_hole);
+  EXPECT_NEAR(r.largest_hole->size, std::sqrt(8.0), 1e-9);
+  EXPECT_FALSE(r.wrapped_sheets);
+  EXPECT_EQ(r.solidity, 1);
+  const MeshResult result = mesh_shape(r.shape, r.options);
+  EXPECT_NEAR(result.report.quality.volume, 8, 0.01);
+}
+
+TEST(Repaired, SheetsBesideASolidAreLeftToBeNamed) {
+  Mesh sheet = make_grid_plane(1, 1);
+  const Repaired r = repaired(shape_from_mesh(merged(make_box(), translated(std::move(sheet), {0, 0, 2})), "both"));
+  EXPECT_FALSE(r.wrapped_sheets);
+  EXPECT_EQ(r.filled_holes, 0u) << "a sheet has no hole";
+  MeshOptions options = r.options;
+  options.vertices = 400;
+  const MeshResult result = mesh_shape(r.shape, options);
+  EXPECT_NEAR(result.report.quality.volume, 8, 0.01);
+  EXPECT_TRUE(std::any_of(result.report.findings.begin(), result.report.findings.end(),
+                          [](const Finding& f) { return f.code == FindingCode::sheets_left_out; }));
 }
 
 TEST(Repaired, TheHullDecidesAndOtherOptionsStay) {
