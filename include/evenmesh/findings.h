@@ -26,6 +26,7 @@ enum class FindingCode {
   point_gaps_bridged,
   inside_by_vote,
   not_finite,
+  single_precision,
   closed_by_bounds,
   crossings_unresolved,
   sheets_merged,
@@ -43,7 +44,9 @@ enum class FindingCode {
   not_manifold,
   not_closed,
   self_intersections,
-  no_area
+  no_area,
+  coordinates_rounded,
+  stl_as_text
 };
 
 /// A number (lengths in model units) or a word.

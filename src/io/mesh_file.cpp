@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "evenmesh/error.h"
 #include "evenmesh/io.h"
+#include "geometry/single_precision.h"
 #include "io/bytes.h"
 #include "io/formats.h"
 #include "io/text.h"
@@ -165,6 +166,17 @@ std::variant<Mesh, PointCloud> parse_mesh_or_points(std::string_view bytes, std:
 
 std::variant<Mesh, PointCloud> read_mesh_or_points(const std::filesystem::path& path, ExecutionContext& context) {
   return load(path, context);
+}
+
+std::vector<Vec3> stored_vertices(const Mesh& mesh, MeshFormat format) {
+  if (fits_single_precision(mesh)) return in_single_precision(mesh.vertices);
+  std::vector<Vec3> vertices = mesh.vertices;
+  if (format != MeshFormat::glb) return vertices;
+  const Vec3 origin = gltf_translation(mesh);
+  for (Vec3& v : vertices) v -= origin;
+  vertices = in_single_precision(vertices);
+  for (Vec3& v : vertices) v += origin;
+  return vertices;
 }
 
 std::string serialize_mesh(const Mesh& mesh, MeshFormat format) {

@@ -34,16 +34,35 @@ void check(const MeshOptions& o) {
     throw InvalidInput("the bounds are empty: each lower limit must be below its upper one");
 }
 
+/// What the options say of places, counted from the origin. The bounds are with the sampler.
+MeshOptions counted_from(const Vec3& origin, MeshOptions options) {
+  if (options.density && origin != Vec3{})
+    options.density = [density = options.density, origin](const Vec3& p) { return density(p + origin); };
+  return options;
+}
+
+/// What was found and kept is told in the caller's coordinates.
+void move_back(const Vec3& origin, Report& report, Artifacts& kept) {
+  for (Finding& finding : report.findings)
+    if (finding.place) finding = make_finding(finding.code, std::move(finding.values), *finding.place + origin);
+  if (kept.dexels) kept.dexels->origin += origin;
+  if (kept.shell) kept.shell->origin += origin;
+  if (kept.shell_cut) kept.shell_cut->origin += origin;
+}
+
 MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
                Artifacts& kept) {
   StageTimer timer(context);
   const std::unique_ptr<Sampler> sampler = make_sampler(shape, options.bounds, kernels, timer, context);
-  Plan plan = make_plan(*sampler, options, timer, context);
-  Sampling sampling = sample(*sampler, std::move(plan), options, timer, context, kept);
-  const Tessellation cells = tessellate(std::move(sampling), options, kernels, timer, context);
-  const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, options, context); });
-  Refined refined = refine(draft, cells, *sampler, options, timer, context);
-  return measure(std::move(refined), draft, cells, options, timer, context);
+  const MeshOptions local = counted_from(sampler->origin(), options);
+  Plan plan = make_plan(*sampler, local, timer, context);
+  Sampling sampling = sample(*sampler, std::move(plan), local, timer, context, kept);
+  const Tessellation cells = tessellate(std::move(sampling), local, kernels, timer, context);
+  const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, local, context); });
+  Refined refined = refine(draft, cells, *sampler, local, timer, context);
+  MeshResult result = measure(std::move(refined), draft, cells, local, timer, context);
+  if (sampler->origin() != Vec3{}) move_back(sampler->origin(), result.report, kept);
+  return result;
 }
 
 }  // namespace
