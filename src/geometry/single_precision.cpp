@@ -1,6 +1,7 @@
 #include "geometry/single_precision.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,9 +23,14 @@ double displacement(const Mesh& mesh, const std::vector<Vec3>& moved) {
 }
 
 std::vector<Vec3> in_single_precision(const std::vector<Vec3>& vertices) {
-  std::vector<Vec3> rounded = vertices;
-  for (Vec3& v : rounded)
-    for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(v[a]);
+  // Not back and forth in one step: GCC 12 takes that, for two coordinates at once, for nothing to do.
+  std::vector<std::array<float, 3>> single;
+  single.reserve(vertices.size());
+  for (const Vec3& v : vertices)
+    single.push_back({static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
+  std::vector<Vec3> rounded;
+  rounded.reserve(vertices.size());
+  for (const auto& [x, y, z] : single) rounded.push_back({x, y, z});
   return rounded;
 }
 

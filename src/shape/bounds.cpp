@@ -16,6 +16,7 @@ namespace evenmesh {
 namespace {
 
 constexpr int largest_exponent = 20, smallest_exponent = -20;  ///< half sides of the cubes, as powers of two
+constexpr int farthest_exponent = 26;                          ///< of survey coordinates
 constexpr int shell_depth = 5;                                 ///< subdivisions of a shell's 56 cells
 constexpr int shrink_depth = 6;                                ///< 64 cells along each side
 constexpr double enough = 0.7;                                 ///< shrinking stops when a side keeps more than this
@@ -113,15 +114,20 @@ std::vector<Cell> cells_of_shell(double half) {
   throw UnusableInput(message);
 }
 
+/// Exponent of the first cube that has something in its shell; `otherwise` where all shells are proved outside.
+int first_undecided(const Field& field, int from, int otherwise) {
+  for (int exponent = from; exponent > otherwise; --exponent)
+    if (!proved_outside(field, cells_of_shell(std::ldexp(1.0, exponent - 1)))) return exponent;
+  return otherwise;
+}
+
 /// Half side of a cube that holds the solid.
 double half_side_of_cube(const Field& field) {
-  for (int exponent = largest_exponent; exponent > smallest_exponent; --exponent) {
-    const double half = std::ldexp(1.0, exponent - 1);
-    if (proved_outside(field, cells_of_shell(half))) continue;
-    if (exponent == largest_exponent) throw_unbounded(field);
-    return 2 * half;
-  }
-  return std::ldexp(1.0, smallest_exponent);
+  const int far = first_undecided(field, farthest_exponent, largest_exponent);
+  if (far > largest_exponent && far < farthest_exponent) return std::ldexp(1.0, far);
+  const int exponent = first_undecided(field, largest_exponent, smallest_exponent);
+  if (exponent == largest_exponent && far == farthest_exponent) throw_unbounded(field);
+  return std::ldexp(1.0, exponent);
 }
 
 /// Adds the cells of the last subdivision on which f ≥ 0 is not proved. Cells within `found` cannot add anything.
@@ -158,7 +164,8 @@ Box find_bounds(const Field& field) {
     return box;
   }
   throw UnusableInput(
-      "f < 0 nowhere found: the solid is empty, or too small; inside is where the expression is negative");
+      "f < 0 nowhere found: the solid is empty, or too small for as far away as it is (then give --bounds "
+      "x0,y0,z0,x1,y1,z1); inside is where the expression is negative");
 }
 
 namespace {
