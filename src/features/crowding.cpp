@@ -71,6 +71,7 @@ FeatureCurves without_crowded(const FeatureCurves& features, double reach) {
 FeatureCurves without_curves(const FeatureCurves& features, const std::vector<char>& doomed) {
   FeatureCurves kept;
   kept.apexes = features.apexes;
+  kept.left_out = features.left_out;
   std::vector<Index> now(features.corners.size(), none);
   const auto corner = [&](Index c) {
     if (c == none) return none;
@@ -81,8 +82,11 @@ FeatureCurves without_curves(const FeatureCurves& features, const std::vector<ch
     return now[c];
   };
   for (std::size_t i = 0; i < features.curves.size(); ++i) {
-    if (doomed[i]) continue;
     FeatureCurve curve = features.curves[i];
+    if (doomed[i]) {
+      kept.left_out.push_back(curve.points[curve.points.size() / 2]);
+      continue;
+    }
     curve.from = corner(curve.from);
     curve.to = corner(curve.to);
     kept.curves.push_back(std::move(curve));

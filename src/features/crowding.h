@@ -9,7 +9,8 @@ namespace evenmesh {
 /// `reach` (model units), as around a thin plate; and the corners that are left without a curve.
 FeatureCurves without_crowded(const FeatureCurves& features, double reach);
 
-/// The feature curves but for the marked curves, and without corners where none ends any more. @param doomed  by curve
+/// The feature curves but for the marked ones, which are left out, and without corners where none ends any more. @param
+/// doomed  by curve
 FeatureCurves without_curves(const FeatureCurves& features, const std::vector<char>& doomed);
 
 }  // namespace evenmesh

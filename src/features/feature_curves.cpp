@@ -132,7 +132,8 @@ FeatureCurves find_feature_curves(const SampleSet& samples, double angle, double
                                                 std::cos(weak_angle * angle * std::numbers::pi / 180), context);
   if (graph.nodes.empty()) return {};
   const FeatureNetwork network = find_feature_network(graph, samples.grid.origin, samples.grid.spacing, edge);
-  const FeatureCurves all = Chains(edge, samples.grid.spacing).make(network);
+  FeatureCurves all = Chains(edge, samples.grid.spacing).make(network);
+  all.left_out = network.left_out;
   FeatureCurves features = without_crowded(all, crowded_distance * edge);
   features.apexes = find_apexes(samples, graph.nodes, features, angle, edge, context);
   return features;

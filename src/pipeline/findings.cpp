@@ -67,7 +67,7 @@ constexpr std::array kinds{
     Kind{FindingCode::sheet_topology_kept, warning, "sheet-topology-kept",
          "sheets have no inside that balls could be added to: their topology was kept"},
     Kind{FindingCode::features_not_followed, warning, "features-not-followed",
-         "none of the {count:.0f} sharp edges found is kept: {reason}"},
+         "{count:.0f} of {all:.0f} sharp edges are not held, first near ({x:.4g}, {y:.4g}, {z:.4g}): {reason}"},
     Kind{FindingCode::features_released, warning, "features-released",
          "{count:.0f} sharp edges were given up where they stood in the way of the topology: ask for more vertices, or "
          "take --topology keep"},
