@@ -10,10 +10,8 @@ namespace {
 
 using Index = std::uint32_t;
 constexpr Index none = FeaturePath::none;
-constexpr double min_length = 3;  ///< of connected curves together, in edges, and five times that for every loose end
-constexpr double noisy_share = 0.5;      ///< of sharp links among all: below, sharpness comes of noise or smooth bends
-constexpr double sure_length = 12;       ///< of connected curves that are no noise even there, in edges
-constexpr double fading_share = 0.1;     ///< of weak links along them, at most
+constexpr double min_length = 3;    ///< of connected curves together, in edges, and five times that for every loose end
+constexpr double sure_length = 12;  ///< of connected curves that are no noise where most bends are, in edges
 constexpr double loop_length = 1.5;      ///< of a loop from a corner to itself, in edges
 constexpr double spur_length = 0.7;      ///< of a branch that ends nowhere, in edges
 constexpr double corner_distance = 0.2;  ///< corners nearer than this, in edges, are one
@@ -43,6 +41,7 @@ class Network {
   }
 
   void clean() {
+    if (noisy_) drop_fading_paths();
     for (bool changed = true; changed;) {
       changed = prune();
       changed |= contract();
@@ -107,7 +106,7 @@ class Network {
     std::vector<std::vector<Link>> weak(graph_.nodes.size());
     for (Index i = 0; i < graph_.links.size(); ++i) {
       const auto [a, b] = graph_.links[i];
-      auto& list = graph_.sharp[i] ? links_ : weak;
+      auto& list = graph_.sharpness[i] == Sharpness::weak ? weak : links_;
       list[a].push_back({b, i});
       list[b].push_back({a, i});
     }
@@ -280,7 +279,8 @@ class Network {
   /// Connected paths; a closed one is alone.
   struct Part {
     double length = 0;
-    std::size_t loose_ends = 0, links = 0, weak_links = 0;
+    std::size_t loose_ends = 0, links = 0, weak = 0, clear = 0;
+    bool fades() const { return 10 * weak > links; }
   };
 
   void drop_small_parts() {
@@ -309,23 +309,33 @@ class Network {
       for (const Link& link : links_[path.nodes[i]])
         if (link.other == path.nodes[i + 1]) {
           ++part.links;
-          part.weak_links += !graph_.sharp[link.id];
+          part.weak += graph_.sharpness[link.id] == Sharpness::weak;
+          part.clear += graph_.sharpness[link.id] == Sharpness::clear;
         }
+  }
+  /// What is sharp here and there only must not hang noise on the edges that are sharp.
+  void drop_fading_paths() {
+    for (Path& path : paths_) {
+      Part alone;
+      add(path, alone);
+      if (alone.fades()) path.alive = false;
+    }
   }
   void judge(Path& path, const Part& part) {
     const double ends = static_cast<double>(part.loose_ends);
-    const bool fades = static_cast<double>(part.weak_links) > fading_share * static_cast<double>(part.links);
-    if (noisy_ && (fades || part.length < sure_length * edge_)) path.alive = false;
+    const bool mostly_clear = part.links > 0 && 10 * part.clear >= 9 * part.links;
+    const bool long_and_sharp = part.length >= sure_length * edge_ && !part.fades();
+    if (noisy_ && !mostly_clear && !long_and_sharp) path.alive = false;
     if (part.length >= min_length * (1 + 5 * ends) * edge_) return;
-    if (path.alive && ends == 0 && !path.nodes.empty())
+    if (path.alive && !noisy_ && ends == 0 && !path.nodes.empty())
       left_out_.push_back(graph_.nodes[path.nodes[path.nodes.size() / 2]].place);
     path.alive = false;
   }
 
   /// Whether most of what bends is not sharp.
   static bool is_noisy(const FeatureGraph& graph) {
-    const auto sharp = std::count(graph.sharp.begin(), graph.sharp.end(), 1);
-    return static_cast<double>(sharp) < noisy_share * static_cast<double>(graph.links.size());
+    const auto weak = std::count(graph.sharpness.begin(), graph.sharpness.end(), Sharpness::weak);
+    return 2 * static_cast<std::size_t>(weak) > graph.links.size();
   }
 
   const FeatureGraph& graph_;
