@@ -132,6 +132,7 @@ FeatureCurves find_feature_curves(const SampleSet& samples, double angle, double
   const FeatureNetwork network = find_feature_network(graph, samples.grid.origin, samples.grid.spacing, edge);
   FeatureCurves all = Chains(edge, samples.grid.spacing).make(network);
   all.left_out = network.left_out;
+  all = without_repeated(all, samples.grid.spacing);
   FeatureCurves features = without_crowded(all, crowded_distance * edge);
   features.apexes = find_apexes(samples, graph.nodes, features, angle, edge, context);
   return features;

@@ -10,8 +10,10 @@ namespace {
 
 using Index = std::uint32_t;
 constexpr Index none = FeaturePath::none;
-constexpr double min_length = 3;    ///< of connected curves together, in edges, and five times that for every loose end
-constexpr double sure_length = 12;  ///< of connected curves that are no noise where most bends are, in edges
+constexpr double min_length = 3;  ///< of connected curves together, in edges, and five times that for every loose end
+/// Connected curves that are no noise even where most of what bends is not sharp: so long, in edges and compared with
+/// all that bends, where they are sharp, or clear, along nine tenths.
+constexpr double sharp_length = 20, sharp_extent = 0.05, clear_length = 6, clear_extent = 0.03;
 constexpr double loop_length = 1.5;      ///< of a loop from a corner to itself, in edges
 constexpr double spur_length = 0.7;      ///< of a branch that ends nowhere, in edges
 constexpr double corner_distance = 0.2;  ///< corners nearer than this, in edges, are one
@@ -33,6 +35,7 @@ class Network {
         spacing_(spacing),
         edge_(edge),
         noisy_(is_noisy(graph)),
+        extent_(extent(graph)),
         joined_(graph.nodes.size()),
         planes_(graph.nodes.size()) {
     for (Index v = 0; v < planes_.size(); ++v) planes_[v] = graph.nodes[v].planes;
@@ -323,15 +326,23 @@ class Network {
   }
   void judge(Path& path, const Part& part) {
     const double ends = static_cast<double>(part.loose_ends);
-    const bool mostly_clear = part.links > 0 && 10 * part.clear >= 9 * part.links;
-    const bool long_and_sharp = part.length >= sure_length * edge_ && !part.fades();
-    if (noisy_ && !mostly_clear && !long_and_sharp) path.alive = false;
+    const auto is_long = [&](double edges, double extent) {
+      return part.length >= std::max(edges * edge_, extent * extent_);
+    };
+    const bool sharp = !part.fades() && is_long(sharp_length, sharp_extent);
+    const bool clear = 10 * part.clear >= 9 * part.links && is_long(clear_length, clear_extent);
+    if (noisy_ && !sharp && !clear) path.alive = false;
     if (part.length >= min_length * (1 + 5 * ends) * edge_) return;
     if (path.alive && !noisy_ && ends == 0 && !path.nodes.empty())
       left_out_.push_back(graph_.nodes[path.nodes[path.nodes.size() / 2]].place);
     path.alive = false;
   }
 
+  static double extent(const FeatureGraph& graph) {
+    Box box;
+    for (const FeatureNode& node : graph.nodes) box.add(node.place);
+    return box.longest_side();
+  }
   /// Whether most of what bends is not sharp.
   static bool is_noisy(const FeatureGraph& graph) {
     const auto weak = std::count(graph.sharpness.begin(), graph.sharpness.end(), Sharpness::weak);
@@ -342,6 +353,7 @@ class Network {
   Vec3 origin_;
   double spacing_, edge_;
   bool noisy_;
+  double extent_;  ///< of all that bends
   std::vector<Vec3> left_out_;
   std::vector<std::vector<Link>> links_;
   std::vector<Path> paths_;

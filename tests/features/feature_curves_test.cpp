@@ -130,6 +130,18 @@ TEST(Followable, ShortCurvesGoFirstAndStraightOnesCountTogether) {
   EXPECT_TRUE(followable(features, 1, 10).curves.empty());
 }
 
+TEST(FeatureCurves, FoundTwiceCountOnce) {
+  FeatureCurves features;
+  features.corners = {{0, 0, 0}, {1, 0, 0}};
+  features.curves.push_back(line(0, 1, features.corners[0], features.corners[1]));
+  features.curves.push_back(line(0, 1, {0, 0.01, 0}, {0.99, 0.01, 0}));
+  features.curves.push_back(line(0, 1, {0, 0.5, 0}, {1, 0.5, 0}));
+  const FeatureCurves once = without_repeated(features, 0.02);
+  ASSERT_EQ(once.curves.size(), 2u);
+  EXPECT_EQ(once.curves[0].length(), 1) << "the longest stays";
+  EXPECT_TRUE(once.left_out.empty());
+}
+
 TEST(FeatureSeeds, AreEvenlySpacedAndNeighboursInTheDual) {
   const SampleSet samples = sampled_gallery("cube", 64);
   const FeatureCurves features = features_of(samples, 0.26);
