@@ -60,9 +60,10 @@ class Runs {
 };
 
 /// Whether the mesh would have hardly anything but corners along its curves.
-bool is_web(const FeatureCurves& features, std::size_t seeds) {
+/// @param share  seeds for a corner, at least
+bool is_web(const FeatureCurves& features, std::size_t seeds, std::size_t share) {
   constexpr std::size_t many_corners = 100;
-  return features.corners.size() > many_corners && 2 * features.corners.size() > seeds;
+  return features.corners.size() > many_corners && share * features.corners.size() > seeds;
 }
 
 }  // namespace
@@ -73,7 +74,9 @@ FeatureCurves followable(const FeatureCurves& features, double edge, std::size_t
   Runs runs(features);
   for (double limit = edge;; limit *= growth) {
     const std::size_t seeds = place_feature_seeds(kept, edge).size();
-    if (seeds <= most && !is_web(kept, seeds)) break;
+    // What begins to be left out is left out well below the limit: at it, meshes suffer.
+    const std::size_t caution = kept.curves.size() < features.curves.size() ? 2 : 1;
+    if (caution * seeds <= most && !is_web(kept, seeds, 2 * caution)) break;
     std::vector<char> doomed(features.curves.size());
     for (Index c = 0; c < doomed.size(); ++c) doomed[c] = runs.length(c) <= limit;
     kept = without_curves(features, doomed);

@@ -111,22 +111,24 @@ FeatureCurve line(std::uint32_t from, std::uint32_t to, const Vec3& a, const Vec
 }
 
 TEST(Followable, ShortCurvesGoFirstAndStraightOnesCountTogether) {
-  // One line of 20 edges in 20 pieces, and a spur at every joint, half an edge long.
+  // One line of 20 edges in 20 pieces, and two spurs at every joint, half an edge long.
   FeatureCurves features;
   for (int i = 0; i <= 20; ++i) features.corners.push_back({double(i), 0, 0});
   for (std::uint32_t i = 0; i < 20; ++i)
     features.curves.push_back(line(i, i + 1, features.corners[i], features.corners[i + 1]));
-  for (std::uint32_t i = 1; i < 20; ++i) {
-    features.corners.push_back({double(i), 0.5, 0});
-    features.curves.push_back(line(i, 20 + i, features.corners[i], features.corners.back()));
-  }
-  const FeatureCurves all = followable(features, 1, 100), some = followable(features, 1, 30);
-  EXPECT_EQ(all.curves.size(), 39u);
+  for (std::uint32_t i = 1; i < 20; ++i)
+    for (const double y : {-0.5, 0.5}) {
+      const auto tip = static_cast<std::uint32_t>(features.corners.size());
+      features.corners.push_back({double(i), y, 0});
+      features.curves.push_back(line(i, tip, features.corners[i], features.corners[tip]));
+    }
+  const FeatureCurves all = followable(features, 1, 100), some = followable(features, 1, 50);
+  EXPECT_EQ(all.curves.size(), 58u);
   EXPECT_TRUE(all.left_out.empty());
   EXPECT_EQ(some.curves.size(), 20u);
   EXPECT_EQ(some.corners.size(), 21u);
-  ASSERT_EQ(some.left_out.size(), 19u);
-  for (const Vec3& p : some.left_out) EXPECT_EQ(p.y, 0.25);
+  ASSERT_EQ(some.left_out.size(), 38u);
+  for (const Vec3& p : some.left_out) EXPECT_EQ(std::abs(p.y), 0.25);
   EXPECT_TRUE(followable(features, 1, 10).curves.empty());
 }
 
