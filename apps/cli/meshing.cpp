@@ -11,6 +11,7 @@
 #include "evenmesh/io.h"
 #include "evenmesh/render.h"
 #include "evenmesh/solid.h"
+#include "evenmesh/written.h"
 #include "interrupt.h"
 #include "summary.h"
 
@@ -109,7 +110,7 @@ int run_meshing(MeshingArguments a, const Operation& operation) {
     MeshOptions options = plan.options;
     const Shape shape = make_shape(a, operation, plan, options, context);
     const double reading = seconds_since(start);
-    result = mesh_shape(shape, options, context, &kept);
+    result = as_written(mesh_shape(shape, options, context, &kept), plan.output.format, context);
     auto& seconds = result.report.seconds;
     seconds.insert(seconds.begin(), {"read", reading});
     require_kept(a, kept);

@@ -93,8 +93,8 @@ std::string table(const PointCloud& cloud, double spacing) {
   text += row("normals", cloud.normals.empty() ? "no" : "yes");
   text += row("spacing", fmt::format("{:.6g} (median distance to the sixth nearest point)", spacing));
   text += row("size", size_line(box));
-  text += row("from", fmt::format("{:.6g}, {:.6g}, {:.6g}", box.lo.x, box.lo.y, box.lo.z));
-  text += row("to", fmt::format("{:.6g}, {:.6g}, {:.6g}", box.hi.x, box.hi.y, box.hi.z));
+  text += row("from", fmt::format("{:.9g}, {:.9g}, {:.9g}", box.lo.x, box.lo.y, box.lo.z));
+  text += row("to", fmt::format("{:.9g}, {:.9g}, {:.9g}", box.hi.x, box.hi.y, box.hi.z));
   return text;
 }
 

@@ -37,6 +37,7 @@ enum class FindingCode {
   flakes_left_out,
   inside_by_vote,
   not_finite,
+  single_precision,
   closed_by_bounds,
   crossings_unresolved,
   cavities_filled,
@@ -59,7 +60,9 @@ enum class FindingCode {
   self_intersections,
   no_area,
   coarser_than_curvature,
-  unit_lost
+  unit_lost,
+  coordinates_rounded,
+  stl_as_text
 };
 
 /// A number (lengths in model units) or a word.

@@ -74,13 +74,18 @@ FileContents read_mesh_or_points(const std::filesystem::path& path,
 FileContents parse_mesh_or_points(std::string_view bytes, std::string_view name,
                                   ExecutionContext& context = ExecutionContext::silent());
 
-/// Writes a mesh; format by extension. PLY, STL, GLB are binary little-endian, float32 coordinates.
-/// The file appears under its name only when it is complete (temporary name, then rename).
+/// Writes a mesh; format by extension. Coordinates are float32 where that moves no vertex by more than 1e-4 edges of
+/// its triangles; otherwise float64 (PLY), decimals that give the double back (OBJ, OFF, 3MF, and STL, which then is
+/// text), or float32 about a node's translation (GLB). PLY, STL, GLB are binary little-endian. The file appears under
+/// its name only when it is complete (temporary name, then rename).
 ///
 /// @param path  a file, or "-" for standard output, then `format` is needed
 /// @throws InvalidInput   unknown extension, or "-" without a format
 /// @throws UnusableInput  the file cannot be written
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, std::optional<MeshFormat> format = {});
+
+/// Where a file of the format has the mesh's vertices.
+std::vector<Vec3> stored_vertices(const Mesh& mesh, MeshFormat format);
 
 /// The bytes of a mesh file. 3MF says the mesh's unit (where it is not known: millimeter); GLB, which is in meters by
 /// definition, scales by it.

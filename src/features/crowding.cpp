@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "geometry/point_hash.h"
 
@@ -21,6 +22,19 @@ class Crowding {
       }
   }
 
+  /// The shortest first; what was taken for repeated repeats nothing itself.
+  FeatureCurves unrepeated() const {
+    std::vector<Index> order(features_.curves.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return features_.curves[a].length() < features_.curves[b].length(); });
+    std::vector<char> repeated(features_.curves.size(), 0);
+    for (const Index c : order) repeated[c] = repeats(c, repeated);
+    FeatureCurves kept = without_curves(features_, repeated);
+    kept.left_out = features_.left_out;  // each is there still
+    return kept;
+  }
+
   FeatureCurves resolved() const {
     std::vector<char> doomed(features_.curves.size());
     for (Index c = 0; c < features_.curves.size(); ++c) doomed[c] = is_crowded(c);
@@ -32,6 +46,15 @@ class Crowding {
     Index curve, point;
   };
 
+  bool repeats(Index c, const std::vector<char>& repeated) const {
+    const FeatureCurve& curve = features_.curves[c];
+    const auto beside = [&](const Vec3& p) {
+      return points_.near(p, reach_,
+                          [&](std::uint32_t i) { return places_[i].curve != c && !repeated[places_[i].curve]; });
+    };
+    return 10 * std::count_if(curve.points.begin(), curve.points.end(), beside) >
+           9 * static_cast<std::ptrdiff_t>(curve.points.size());
+  }
   /// Whether a third of the curve's points, not counting those near its ends, have others beside them.
   bool is_crowded(Index c) const {
     const FeatureCurve& curve = features_.curves[c];
@@ -68,9 +91,14 @@ FeatureCurves without_crowded(const FeatureCurves& features, double reach) {
   return Crowding(features, reach).resolved();
 }
 
+FeatureCurves without_repeated(const FeatureCurves& features, double reach) {
+  return Crowding(features, reach).unrepeated();
+}
+
 FeatureCurves without_curves(const FeatureCurves& features, const std::vector<char>& doomed) {
   FeatureCurves kept;
   kept.apexes = features.apexes;
+  kept.left_out = features.left_out;
   std::vector<Index> now(features.corners.size(), none);
   const auto corner = [&](Index c) {
     if (c == none) return none;
@@ -81,8 +109,11 @@ FeatureCurves without_curves(const FeatureCurves& features, const std::vector<ch
     return now[c];
   };
   for (std::size_t i = 0; i < features.curves.size(); ++i) {
-    if (doomed[i]) continue;
     FeatureCurve curve = features.curves[i];
+    if (doomed[i]) {
+      kept.left_out.push_back(curve.points[curve.points.size() / 2]);
+      continue;
+    }
     curve.from = corner(curve.from);
     curve.to = corner(curve.to);
     kept.curves.push_back(std::move(curve));

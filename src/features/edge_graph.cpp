@@ -9,11 +9,14 @@
 namespace evenmesh {
 namespace {
 
+constexpr double weak_angle = 0.65;   ///< of the angle asked for: down to this feature curves go on that fade
+constexpr double clear_angle = 1.75;  ///< of it: no noise
+
 /// A sharp link as a cube sees it; the cube on the other side of the face has the same key.
 struct HalfLink {
   std::uint64_t key;  ///< lower sample << 32 | higher sample
   std::uint32_t node;
-  bool sharp;
+  Sharpness sharpness;
   friend bool operator<(const HalfLink& a, const HalfLink& b) {
     return a.key != b.key ? a.key < b.key : a.node < b.node;
   }
@@ -30,11 +33,12 @@ struct BrickNodes {
 
 class Finder {
  public:
-  Finder(const SampleSet& samples, double sharp, double weak)
+  Finder(const SampleSet& samples, double angle)
       : samples_(samples),
-        sharp_(sharp),
-        weak_(weak),
-        safe_step_(static_cast<int>(32767 * std::acos(weak) / (3 * std::numbers::sqrt2)) - 2) {}
+        clear_(cosine(std::min(clear_angle * angle, 170.0))),
+        sharp_(cosine(angle)),
+        weak_(cosine(weak_angle * angle)),
+        safe_step_(static_cast<int>(32767 * std::acos(weak_) / (3 * std::numbers::sqrt2)) - 2) {}
 
   void visit(const CubeBrick& brick, const std::uint32_t* loop, int n, BrickNodes& found) const {
     ++found.loops;
@@ -51,12 +55,17 @@ class Finder {
     for (int i = 0; i < n; ++i)
       if (const double cosine = dot(normal[i], normal[after(i)]); cosine < weak_) {
         const auto [s, t] = std::minmax(loop[i], loop[after(i)]);
-        found.links.push_back({std::uint64_t{s} << 32 | t, node, cosine < sharp_});
+        found.links.push_back({std::uint64_t{s} << 32 | t, node, sharpness(cosine)});
       }
     found.nodes.push_back(make_node(brick, loop, normal.data(), n));
   }
 
  private:
+  static double cosine(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
+  Sharpness sharpness(double cosine) const {
+    return cosine < clear_ ? Sharpness::clear : cosine < sharp_ ? Sharpness::sharp : Sharpness::weak;
+  }
+
   /// Whether the angle is surely below the limit: in the octahedral map a step of length d is an angle of 3·d at most.
   bool is_nearly_same(PackedNormal a, PackedNormal b) const {
     const int u = int(a.bits & 0xffff) - int(b.bits & 0xffff), v = int(a.bits >> 16) - int(b.bits >> 16);
@@ -94,16 +103,16 @@ class Finder {
   }
 
   const SampleSet& samples_;
-  double sharp_, weak_;
-  int safe_step_;  ///< of either coordinate of packed normals
+  double clear_, sharp_, weak_;  ///< cosines
+  int safe_step_;                ///< of either coordinate of packed normals
 };
 
 }  // namespace
 
-FeatureGraph find_feature_graph(const SampleSet& samples, double sharp, double weak, ExecutionContext& context) {
+FeatureGraph find_feature_graph(const SampleSet& samples, double angle, ExecutionContext& context) {
   const auto bricks = cube_bricks(samples, context);
   std::vector<BrickNodes> of_brick(bricks.size());
-  const Finder finder(samples, sharp, weak);
+  const Finder finder(samples, angle);
   for_loops(samples, bricks, context,
             [&](std::size_t b, const std::uint32_t* loop, int n) { finder.visit(bricks[b], loop, n, of_brick[b]); });
   FeatureGraph graph;
@@ -115,13 +124,13 @@ FeatureGraph find_feature_graph(const SampleSet& samples, double sharp, double w
     }
     const auto first = static_cast<std::uint32_t>(graph.nodes.size());
     graph.nodes.insert(graph.nodes.end(), found.nodes.begin(), found.nodes.end());
-    for (const HalfLink& link : found.links) halves.push_back({link.key, first + link.node, link.sharp});
+    for (const HalfLink& link : found.links) halves.push_back({link.key, first + link.node, link.sharpness});
   }
   parallel_sort(context, halves);
   for (std::size_t i = 0; i + 1 < halves.size(); ++i)
     if (halves[i].key == halves[i + 1].key) {
       graph.links.push_back({halves[i].node, halves[i + 1].node});
-      graph.sharp.push_back(halves[i].sharp);
+      graph.sharpness.push_back(halves[i].sharpness);
     }
   return graph;
 }

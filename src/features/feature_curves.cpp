@@ -17,7 +17,6 @@ namespace {
 using Index = std::uint32_t;
 constexpr Index none = FeatureCurve::none;
 constexpr double crowded_distance = 0.33;  ///< of curves side by side, in edges
-constexpr double weak_angle = 0.65;        ///< of the angle asked for: down to this feature curves go on that fade
 constexpr double max_tightened = 1.5;      ///< how much denser vertices are there than elsewhere, at most
 constexpr double sharp_turn = 40;          ///< degrees within a few grid cells: a corner
 
@@ -128,11 +127,12 @@ class Chains {
 }  // namespace
 
 FeatureCurves find_feature_curves(const SampleSet& samples, double angle, double edge, ExecutionContext& context) {
-  const FeatureGraph graph = find_feature_graph(samples, std::cos(angle * std::numbers::pi / 180),
-                                                std::cos(weak_angle * angle * std::numbers::pi / 180), context);
+  const FeatureGraph graph = find_feature_graph(samples, angle, context);
   if (graph.nodes.empty()) return {};
   const FeatureNetwork network = find_feature_network(graph, samples.grid.origin, samples.grid.spacing, edge);
-  const FeatureCurves all = Chains(edge, samples.grid.spacing).make(network);
+  FeatureCurves all = Chains(edge, samples.grid.spacing).make(network);
+  all.left_out = network.left_out;
+  all = without_repeated(all, samples.grid.spacing);
   FeatureCurves features = without_crowded(all, crowded_distance * edge);
   features.apexes = find_apexes(samples, graph.nodes, features, angle, edge, context);
   return features;

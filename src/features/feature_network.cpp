@@ -11,6 +11,9 @@ namespace {
 using Index = std::uint32_t;
 constexpr Index none = FeaturePath::none;
 constexpr double min_length = 3;  ///< of connected curves together, in edges, and five times that for every loose end
+/// Connected curves that are no noise even where most of what bends is not sharp: so long, in edges and compared with
+/// all that bends, where they are sharp, or clear, along nine tenths.
+constexpr double sharp_length = 20, sharp_extent = 0.05, clear_length = 6, clear_extent = 0.03;
 constexpr double loop_length = 1.5;      ///< of a loop from a corner to itself, in edges
 constexpr double spur_length = 0.7;      ///< of a branch that ends nowhere, in edges
 constexpr double corner_distance = 0.2;  ///< corners nearer than this, in edges, are one
@@ -31,6 +34,8 @@ class Network {
         origin_(origin),
         spacing_(spacing),
         edge_(edge),
+        noisy_(is_noisy(graph)),
+        extent_(extent(graph)),
         joined_(graph.nodes.size()),
         planes_(graph.nodes.size()) {
     for (Index v = 0; v < planes_.size(); ++v) planes_[v] = graph.nodes[v].planes;
@@ -39,6 +44,7 @@ class Network {
   }
 
   void clean() {
+    if (noisy_) drop_fading_paths();
     for (bool changed = true; changed;) {
       changed = prune();
       changed |= contract();
@@ -49,6 +55,7 @@ class Network {
 
   FeatureNetwork result() {
     FeatureNetwork network;
+    network.left_out = std::move(left_out_);
     std::map<Index, Index> number_of;
     const auto number = [&](Index node) {
       const Index root = junction(node);
@@ -103,7 +110,7 @@ class Network {
     std::vector<std::vector<Link>> weak(graph_.nodes.size());
     for (Index i = 0; i < graph_.links.size(); ++i) {
       const auto [a, b] = graph_.links[i];
-      auto& list = graph_.sharp[i] ? links_ : weak;
+      auto& list = graph_.sharpness[i] == Sharpness::weak ? weak : links_;
       list[a].push_back({b, i});
       list[b].push_back({a, i});
     }
@@ -273,28 +280,82 @@ class Network {
     std::swap(path.from, path.to);
   }
 
+  /// Connected paths; a closed one is alone.
+  struct Part {
+    double length = 0;
+    std::size_t loose_ends = 0, links = 0, weak = 0, clear = 0;
+    bool fades() const { return 10 * weak > links; }
+  };
+
   void drop_small_parts() {
-    UnionFind part(joined_.size());
-    std::vector<double> length(joined_.size(), 0);
+    UnionFind joined(joined_.size());
     for (const Path& path : paths_)
-      if (path.alive && path.from != none) part.unite(junction(path.from), junction(path.to));
-    for (const Path& path : paths_)
-      if (path.alive && path.from != none) length[part.find(junction(path.from))] += path.length;
-    std::vector<Index> loose_ends(joined_.size(), 0);
+      if (path.alive && path.from != none) joined.unite(junction(path.from), junction(path.to));
+    std::vector<Index> part_of(paths_.size(), none);
+    std::vector<Part> parts(joined_.size());
+    for (Index p = 0; p < paths_.size(); ++p) {
+      if (!paths_[p].alive) continue;
+      const bool closed = paths_[p].from == none;
+      part_of[p] = closed ? static_cast<Index>(parts.size()) : joined.find(junction(paths_[p].from));
+      if (closed) parts.emplace_back();
+      add(paths_[p], parts[part_of[p]]);
+    }
     const std::vector<Index> count = degrees();
     for (Index v = 0; v < count.size(); ++v)
-      if (count[v] == 1) ++loose_ends[part.find(v)];
-    for (Path& path : paths_) {
-      const Index root = path.from == none ? none : part.find(junction(path.from));
-      const double most = root == none ? path.length : length[root], ends = root == none ? 0 : loose_ends[root];
-      if (most < min_length * (1 + 5 * ends) * edge_) path.alive = false;
-    }
+      if (count[v] == 1) ++parts[joined.find(v)].loose_ends;
+    for (Index p = 0; p < paths_.size(); ++p)
+      if (part_of[p] != none) judge(paths_[p], parts[part_of[p]]);
     degrees_.clear();
+  }
+  void add(const Path& path, Part& part) const {
+    part.length += path.length;
+    for (std::size_t i = 0; i + 1 < path.nodes.size(); ++i)
+      for (const Link& link : links_[path.nodes[i]])
+        if (link.other == path.nodes[i + 1]) {
+          ++part.links;
+          part.weak += graph_.sharpness[link.id] == Sharpness::weak;
+          part.clear += graph_.sharpness[link.id] == Sharpness::clear;
+        }
+  }
+  /// What is sharp here and there only must not hang noise on the edges that are sharp.
+  void drop_fading_paths() {
+    for (Path& path : paths_) {
+      Part alone;
+      add(path, alone);
+      if (alone.fades()) path.alive = false;
+    }
+  }
+  void judge(Path& path, const Part& part) {
+    const double ends = static_cast<double>(part.loose_ends);
+    const auto is_long = [&](double edges, double extent) {
+      return part.length >= std::max(edges * edge_, extent * extent_);
+    };
+    const bool sharp = !part.fades() && is_long(sharp_length, sharp_extent);
+    const bool clear = 10 * part.clear >= 9 * part.links && is_long(clear_length, clear_extent);
+    if (noisy_ && !sharp && !clear) path.alive = false;
+    if (part.length >= min_length * (1 + 5 * ends) * edge_) return;
+    if (path.alive && !noisy_ && ends == 0 && !path.nodes.empty())
+      left_out_.push_back(graph_.nodes[path.nodes[path.nodes.size() / 2]].place);
+    path.alive = false;
+  }
+
+  static double extent(const FeatureGraph& graph) {
+    Box box;
+    for (const FeatureNode& node : graph.nodes) box.add(node.place);
+    return box.longest_side();
+  }
+  /// Whether most of what bends is not sharp.
+  static bool is_noisy(const FeatureGraph& graph) {
+    const auto weak = std::count(graph.sharpness.begin(), graph.sharpness.end(), Sharpness::weak);
+    return 2 * static_cast<std::size_t>(weak) > graph.links.size();
   }
 
   const FeatureGraph& graph_;
   Vec3 origin_;
   double spacing_, edge_;
+  bool noisy_;
+  double extent_;  ///< of all that bends
+  std::vector<Vec3> left_out_;
   std::vector<std::vector<Link>> links_;
   std::vector<Path> paths_;
   UnionFind joined_;                             ///< nodes that are one junction

@@ -17,6 +17,7 @@ struct FeaturePath {
 struct FeatureNetwork {
   std::vector<Vec3> junctions;  ///< where paths begin, end or meet
   std::vector<FeaturePath> paths;
+  std::vector<Vec3> left_out;  ///< one place on each path that is too short, though no noise
 };
 
 /// Follows the sharp links, and the weak ones that continue them, and cleans what comes out: no branches and loops too

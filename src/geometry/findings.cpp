@@ -4,6 +4,25 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+
+namespace evenmesh {
+
+/// A coordinate in sentences: as they ask for it or, where that would not tell places apart, with nine digits.
+struct Coordinate {
+  double value;
+};
+
+}  // namespace evenmesh
+
+template <>
+struct fmt::formatter<evenmesh::Coordinate> : fmt::formatter<double> {
+  auto format(const evenmesh::Coordinate& c, fmt::format_context& context) const {
+    constexpr double large = 1e4;
+    if (std::abs(c.value) < large) return fmt::formatter<double>::format(c.value, context);
+    return fmt::format_to(context.out(), "{:.9g}", c.value);
+  }
+};
 
 namespace evenmesh {
 namespace {
@@ -61,6 +80,9 @@ constexpr std::array kinds{
          "the input is not closed: inside or outside was settled by vote at {count:.0f} grid points"},
     Kind{FindingCode::not_finite, warning, "not-finite",
          "{name}: not a finite number at {count:.0f} points, which were taken as outside"},
+    Kind{FindingCode::single_precision, warning, "single-precision",
+         "{name} is computed in single precision, which tells points that far from the origin apart to {rounding:.2g} "
+         "({edges:.2g} edges) only: move it to the origin"},
     Kind{FindingCode::closed_by_bounds, warning, "closed-by-bounds", "the solid leaves its bounds and is closed there"},
     Kind{FindingCode::crossings_unresolved, warning, "crossings-unresolved",
          "parts thinner than a grid cell ({spacing:.3g}) were lost: {count:.0f} of {all:.0f} crossings were left out; "
@@ -80,7 +102,7 @@ constexpr std::array kinds{
     Kind{FindingCode::sheet_topology_kept, warning, "sheet-topology-kept",
          "sheets have no inside that balls could be added to: their topology was kept"},
     Kind{FindingCode::features_not_followed, warning, "features-not-followed",
-         "none of the {count:.0f} sharp edges found is kept: {reason}"},
+         "{count:.0f} of {all:.0f} sharp edges are not held, first near ({x:.4g}, {y:.4g}, {z:.4g}): {reason}"},
     Kind{FindingCode::short_features_left_out, warning, "short-features-left-out",
          "{count:.0f} sharp edges shorter than {length:.3g} are not kept: they would take more than a fifth of the "
          "vertices; ask for more"},
@@ -116,6 +138,11 @@ constexpr std::array kinds{
     Kind{FindingCode::unit_lost, warning, "unit-lost",
          "{format} files have no place for a unit: the coordinates stay in {unit}, which their reader has to know; "
          "--unit {usual} converts them"},
+    Kind{FindingCode::coordinates_rounded, warning, "coordinates-rounded",
+         "single precision, all that the file's format has, moves vertices by up to {edges:.2g} edges; the figures are "
+         "those of the file: write PLY, OBJ, OFF, STL or 3MF"},
+    Kind{FindingCode::stl_as_text, note, "stl-as-text",
+         "binary STL would move vertices by up to {edges:.2g} edges: the STL file is text"},
 };
 
 const Kind& kind_of(FindingCode code) {
@@ -127,16 +154,16 @@ constexpr bool in_order() {
     if (static_cast<std::size_t>(kinds[i].code) != i) return false;
   return true;
 }
-static_assert(in_order() && kinds.size() == static_cast<std::size_t>(FindingCode::unit_lost) + 1);
+static_assert(in_order() && kinds.size() == static_cast<std::size_t>(FindingCode::stl_as_text) + 1);
 
 std::string sentence_of(const Finding& finding, std::string_view pattern) {
   fmt::dynamic_format_arg_store<fmt::format_context> arguments;
   for (const auto& [name, value] : finding.values)
     std::visit([&, &key = name](const auto& v) { arguments.push_back(fmt::arg(key.c_str(), v)); }, value);
   if (finding.place) {
-    arguments.push_back(fmt::arg("x", finding.place->x));
-    arguments.push_back(fmt::arg("y", finding.place->y));
-    arguments.push_back(fmt::arg("z", finding.place->z));
+    arguments.push_back(fmt::arg("x", Coordinate{finding.place->x}));
+    arguments.push_back(fmt::arg("y", Coordinate{finding.place->y}));
+    arguments.push_back(fmt::arg("z", Coordinate{finding.place->z}));
   }
   return fmt::vformat(pattern, arguments);
 }

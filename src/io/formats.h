@@ -41,6 +41,9 @@ std::string write_off(const Mesh& mesh);
 std::string write_gltf(const Mesh& mesh);
 std::string write_threemf(const Mesh& mesh);
 
+/// By what a GLB file moves the mesh, so that what is left fits into single precision; zero where it does anyway.
+Vec3 gltf_translation(const Mesh& mesh);
+
 /// True if a name ends in ".xyz", ".pts", ".pwn" or ".csv", any case.
 bool is_point_name(std::string_view name);
 /// True if text begins like a point file: three numbers or more on a line, maybe behind lines with their titles and

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "geometry/single_precision.h"
 #include "io/affine.h"
 #include "io/binary.h"
 #include "io/formats.h"
@@ -181,15 +182,23 @@ Mesh read_gltf(const Source& source) {
   return SceneReader(source).read();
 }
 
+Vec3 gltf_translation(const Mesh& mesh) {
+  return fits_single_precision(mesh) ? Vec3{} : mesh.bounds().center();
+}
+
 std::string write_gltf(const Mesh& mesh) {
+  const Vec3 origin = gltf_translation(mesh);
+  const bool moved = origin != Vec3{};
   Box box;
-  for (const Vec3& v : mesh.vertices) box.add(v);
+  for (const Vec3& v : mesh.vertices) box.add(v - origin);
   if (mesh.vertices.empty()) box.add({});
   const auto triple = [](const Vec3& v) {
     return fmt::format("[{},{},{}]", static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
   };
   const double scale = mesh.unit ? conversion_factor(*mesh.unit, LengthUnit::meter) : 1;
   const std::string scaling = scale == 1 ? "" : fmt::format(R"(,"scale":[{0},{0},{0}])", scale);
+  const Vec3 to = scale * origin;
+  const std::string shift = moved ? fmt::format(R"(,"translation":[{},{},{}])", to.x, to.y, to.z) : "";
   const std::size_t points = 12 * mesh.vertices.size(), indices = 12 * mesh.triangles.size();
   std::string json = fmt::format(
       R"({{"asset":{{"version":"2.0","generator":"evenmesh"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0{}}}],)"
@@ -198,7 +207,7 @@ std::string write_gltf(const Mesh& mesh) {
       R"({{"buffer":0,"byteOffset":{},"byteLength":{},"target":34963}}],)"
       R"("accessors":[{{"bufferView":0,"componentType":5126,"count":{},"type":"VEC3","min":{},"max":{}}},)"
       R"({{"bufferView":1,"componentType":5125,"count":{},"type":"SCALAR"}}]}})",
-      scaling, points + indices, points, points, indices, mesh.vertices.size(), triple(box.lo), triple(box.hi),
+      scaling + shift, points + indices, points, points, indices, mesh.vertices.size(), triple(box.lo), triple(box.hi),
       3 * mesh.triangles.size());
   json.resize((json.size() + 3) / 4 * 4, ' ');
   const std::size_t size = 12 + 8 + json.size() + 8 + points + indices;
@@ -215,7 +224,7 @@ std::string write_gltf(const Mesh& mesh) {
   out.put(static_cast<std::uint32_t>(points + indices));
   out.put(std::string_view("BIN\0", 4));
   for (const Vec3& v : mesh.vertices) {
-    for (int a = 0; a < 3; ++a) out.put(static_cast<float>(v[a]));
+    for (int a = 0; a < 3; ++a) out.put(static_cast<float>(v[a] - origin[a]));
   }
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t v : t) out.put(v);

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "evenmesh/error.h"
 #include "evenmesh/io.h"
+#include "geometry/single_precision.h"
 #include "io/bytes.h"
 #include "io/formats.h"
 #include "io/text.h"
@@ -201,6 +202,17 @@ std::optional<Finding> unit_remark(const Mesh& mesh, MeshFormat format) {
                      : format == MeshFormat::ply ? "PLY"
                                                  : "OFF";
   return make_finding(FindingCode::unit_lost, {{"format", name}, {"unit", unit}, {"usual", "mm"}});
+}
+
+std::vector<Vec3> stored_vertices(const Mesh& mesh, MeshFormat format) {
+  if (fits_single_precision(mesh)) return in_single_precision(mesh.vertices);
+  std::vector<Vec3> vertices = mesh.vertices;
+  if (format != MeshFormat::glb) return vertices;
+  const Vec3 origin = gltf_translation(mesh);
+  for (Vec3& v : vertices) v -= origin;
+  vertices = in_single_precision(vertices);
+  for (Vec3& v : vertices) v += origin;
+  return vertices;
 }
 
 std::string serialize_mesh(const Mesh& mesh, MeshFormat format) {

@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "evenmesh/error.h"
+#include "geometry/single_precision.h"
 #include "io/formats.h"
 #include "io/polygons.h"
 #include "io/text.h"
@@ -266,10 +267,11 @@ PointCloud obj_points(const Source& original, std::vector<Vec3> vertices) {
 
 std::string write_obj(const Mesh& mesh) {
   std::string text;
-  text.reserve(32 * mesh.vertices.size() + 24 * mesh.triangles.size());
+  const bool single = fits_single_precision(mesh);
+  text.reserve((single ? 32 : 60) * mesh.vertices.size() + 24 * mesh.triangles.size());
   for (const Vec3& v : mesh.vertices) {
     text += 'v';
-    for (int a = 0; a < 3; ++a) append_number(text += ' ', static_cast<float>(v[a]));
+    for (int a = 0; a < 3; ++a) append_coordinate(text += ' ', v[a], single);
     text += '\n';
   }
   for (const Triangle& t : mesh.triangles) {

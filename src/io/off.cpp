@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/single_precision.h"
 #include "io/formats.h"
 #include "io/polygons.h"
 #include "io/text.h"
@@ -138,9 +139,10 @@ Mesh read_off(const Source& original) {
 
 std::string write_off(const Mesh& mesh) {
   std::string text = fmt::format("OFF\n{} {} 0\n", mesh.vertices.size(), mesh.triangles.size());
-  text.reserve(32 * mesh.vertices.size() + 24 * mesh.triangles.size() + text.size());
+  const bool single = fits_single_precision(mesh);
+  text.reserve((single ? 32 : 60) * mesh.vertices.size() + 24 * mesh.triangles.size() + text.size());
   for (const Vec3& v : mesh.vertices) {
-    for (int a = 0; a < 3; ++a) append_number(a == 0 ? text : text += ' ', static_cast<float>(v[a]));
+    for (int a = 0; a < 3; ++a) append_coordinate(a == 0 ? text : text += ' ', v[a], single);
     text += '\n';
   }
   for (const Triangle& t : mesh.triangles) {

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/parallel.h"
+#include "geometry/single_precision.h"
 #include "io/binary.h"
 #include "io/formats.h"
 #include "io/ply_header.h"
@@ -345,14 +346,15 @@ PlyContents read_ply(const Source& source) {
 }
 
 std::string write_ply(const Mesh& mesh) {
+  const bool single = fits_single_precision(mesh);
   const std::string header = fmt::format(
-      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      mesh.vertices.size(), mesh.triangles.size());
-  ByteWriter out(header.size() + 12 * mesh.vertices.size() + 13 * mesh.triangles.size());
+      "ply\nformat binary_little_endian 1.0\nelement vertex {0}\nproperty {2} x\nproperty {2} y\nproperty {2} z\n"
+      "element face {1}\nproperty list uchar int vertex_indices\nend_header\n",
+      mesh.vertices.size(), mesh.triangles.size(), single ? "float" : "double");
+  ByteWriter out(header.size() + (single ? 12 : 24) * mesh.vertices.size() + 13 * mesh.triangles.size());
   out.put(header);
   for (const Vec3& v : mesh.vertices) {
-    for (int a = 0; a < 3; ++a) out.put(static_cast<float>(v[a]));
+    for (int a = 0; a < 3; ++a) single ? out.put(static_cast<float>(v[a])) : out.put(v[a]);
   }
   for (const Triangle& t : mesh.triangles) {
     out.put(std::uint8_t{3});

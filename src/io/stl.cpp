@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "geometry/single_precision.h"
 #include "io/binary.h"
 #include "io/formats.h"
 #include "io/text.h"
@@ -139,7 +140,31 @@ Mesh read_stl(const Source& original) {
   return AsciiReader(source).read();
 }
 
+namespace {
+
+/// What binary STL has no room for.
+std::string stl_text(const Mesh& mesh) {
+  std::string text = "solid evenmesh\n";
+  text.reserve(300 * mesh.triangles.size() + 64);
+  const auto put = [&](const char* word, const Vec3& v, bool single) {
+    text += word;
+    for (int axis = 0; axis < 3; ++axis) append_coordinate(text += ' ', v[axis], single);
+    text += '\n';
+  };
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    put("facet normal", normalized(cross(b - a, c - a)), true);
+    text += "outer loop\n";
+    for (const Vec3& v : {a, b, c}) put("vertex", v, false);
+    text += "endloop\nendfacet\n";
+  }
+  return text += "endsolid evenmesh\n";
+}
+
+}  // namespace
+
 std::string write_stl(const Mesh& mesh) {
+  if (!fits_single_precision(mesh)) return stl_text(mesh);
   ByteWriter out(header_size + facet_size * mesh.triangles.size());
   out.put("binary STL");  // any text but "solid", which would make readers take it for text
   out.skip(80 - 10);

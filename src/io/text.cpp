@@ -47,5 +47,8 @@ void append_number(std::string& text, float value) {
 void append_number(std::string& text, std::uint64_t value) {
   append(text, value);
 }
+void append_coordinate(std::string& text, double value, bool single) {
+  single ? append(text, static_cast<float>(value)) : append(text, value);
+}
 
 }  // namespace evenmesh

@@ -67,5 +67,7 @@ inline const char* next_line(const char* p, const char* end) {
 /// Appends the shortest decimal that gives the same 32-bit float back.
 void append_number(std::string& text, float value);
 void append_number(std::string& text, std::uint64_t value);
+/// Appends the shortest decimal that gives the same double back or, `single`, the same 32-bit float.
+void append_coordinate(std::string& text, double value, bool single);
 
 }  // namespace evenmesh

@@ -10,6 +10,7 @@
 #include <map>
 #include <utility>
 
+#include "geometry/single_precision.h"
 #include "io/affine.h"
 #include "io/formats.h"
 #include "io/text.h"
@@ -290,11 +291,12 @@ std::string write_threemf(const Mesh& mesh) {
 <model unit="{}" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1" type="model"><mesh><vertices>
 )",
                                   word_of(mesh.unit.value_or(LengthUnit::millimeter)));
-  model.reserve(model.size() + 60 * mesh.vertices.size() + 50 * mesh.triangles.size() + 200);
+  const bool single = fits_single_precision(mesh);
+  model.reserve(model.size() + (single ? 60 : 90) * mesh.vertices.size() + 50 * mesh.triangles.size() + 200);
   for (const Vec3& v : mesh.vertices) {
-    append_number(model += "<vertex x=\"", static_cast<float>(v.x));
-    append_number(model += "\" y=\"", static_cast<float>(v.y));
-    append_number(model += "\" z=\"", static_cast<float>(v.z));
+    append_coordinate(model += "<vertex x=\"", v.x, single);
+    append_coordinate(model += "\" y=\"", v.y, single);
+    append_coordinate(model += "\" z=\"", v.z, single);
     model += "\"/>\n";
   }
   model += "</vertices><triangles>\n";

@@ -46,18 +46,37 @@ void complete_findings(const Judgement& judgement, MeshResult& result, Execution
   findings.insert(findings.begin(), first.begin(), first.end());
 }
 
+/// What the options say of places, counted from the origin. The bounds are with the sampler.
+MeshOptions counted_from(const Vec3& origin, MeshOptions options) {
+  if (options.density && origin != Vec3{})
+    options.density = [density = options.density, origin](const Vec3& p) { return density(p + origin); };
+  return options;
+}
+
+/// What was found and kept is told in the caller's coordinates.
+void move_back(const Vec3& origin, Report& report, Artifacts& kept) {
+  for (Finding& finding : report.findings)
+    if (finding.place) finding = make_finding(finding.code, std::move(finding.values), *finding.place + origin);
+  if (kept.dexels) kept.dexels->origin += origin;
+  if (kept.shell) kept.shell->origin += origin;
+  if (kept.shell_cut) kept.shell_cut->origin += origin;
+}
+
 MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
                Artifacts& kept) {
   StageTimer timer(context);
   Judgement judgement;
   const Shape solid = timer.stage("sample", 0, [&] { return judged(shape, options, judgement, context); });
+  if (options.method != Method::raster) require_insides(solid, context);
   const std::unique_ptr<Sampler> sampler = make_sampler(solid, options.bounds, kernels, timer, context);
-  Plan plan = make_plan(*sampler, options, timer, context);
-  Sampling sampling = sample(*sampler, std::move(plan), options, timer, context, kept);
-  const Tessellation cells = tessellate(std::move(sampling), options, kernels, timer, context);
-  const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, options, context); });
-  Refined refined = refine(draft, cells, *sampler, options, timer, context);
-  MeshResult result = measure(std::move(refined), draft, cells, options, timer, context);
+  const MeshOptions local = counted_from(sampler->origin(), options);
+  Plan plan = make_plan(*sampler, local, timer, context);
+  Sampling sampling = sample(*sampler, std::move(plan), local, timer, context, kept);
+  const Tessellation cells = tessellate(std::move(sampling), local, kernels, timer, context);
+  const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, local, context); });
+  Refined refined = refine(draft, cells, *sampler, local, timer, context);
+  MeshResult result = measure(std::move(refined), draft, cells, local, timer, context);
+  if (sampler->origin() != Vec3{}) move_back(sampler->origin(), result.report, kept);
   complete_findings(judgement, result, context);
   return result;
 }
@@ -67,10 +86,7 @@ MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& op
 MeshResult mesh_with(const Kernels& kernels, const Shape& shape, const MeshOptions& options, ExecutionContext& context,
                      Artifacts& kept) {
   check(options);
-  MeshResult result = with_threads(context, [&] {
-    if (options.method != Method::raster) require_insides(shape, context);
-    return run(kernels, shape, options, context, kept);
-  });
+  MeshResult result = with_threads(context, [&] { return run(kernels, shape, options, context, kept); });
   result.mesh.unit = shape.unit;
   std::vector<Finding>& findings = result.report.findings;
   findings.insert(findings.begin(), shape.findings.begin(), shape.findings.end());

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "geometry/single_precision.h"
 #include "refine/fit.h"
 #include "refine/flips.h"
 #include "refine/polish.h"
@@ -42,7 +43,7 @@ class Refinement {
     VertexConstraints& constraints = draft_.constraints;
     if (!measure_quality(mesh, context_).two_manifold()) {
       const std::size_t pairs = intersections(mesh).size();
-      return {std::move(mesh), pairs};
+      return {moved_back(std::move(mesh)), pairs};
     }
     flip_to_delaunay(mesh, constraints, context_);
     polish(mesh, projector_.get(), context_, constraints);
@@ -54,14 +55,21 @@ class Refinement {
       for (const auto& [s, t] : intersections(mesh)) constraints.release(mesh, std::array{s, t});
     const auto find = [&](const Mesh& m) { return intersections(m); };
     const std::size_t left = untangle(mesh, projector_.get(), find, context_, constraints);
-    return {std::move(mesh), left};
+    return {moved_back(std::move(mesh)), left};
   }
 
  private:
-  /// Files hold single precision: what matters is that the mesh written does not intersect itself.
+  Mesh moved_back(Mesh mesh) const {
+    if (const Vec3& origin = sampler_.origin(); origin != Vec3{})
+      for (Vec3& v : mesh.vertices) v += origin;
+    return mesh;
+  }
+
+  /// Files hold single precision where it is near enough: what matters is that the mesh written does not intersect
+  /// itself.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections(Mesh mesh) const {
-    for (Vec3& v : mesh.vertices)
-      for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(v[a]);
+    mesh = moved_back(std::move(mesh));
+    if (fits_single_precision(mesh)) mesh.vertices = in_single_precision(mesh.vertices);
     return self_intersections(mesh, context_);
   }
 

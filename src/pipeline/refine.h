@@ -7,8 +7,8 @@
 namespace evenmesh {
 
 struct Refined {
-  Mesh mesh;
-  std::size_t self_intersections = 0;  ///< pairs of triangles that are left, in single precision as files hold it
+  Mesh mesh;                           ///< in the caller's coordinates
+  std::size_t self_intersections = 0;  ///< pairs of triangles that are left, in the precision that files hold
 };
 
 /// Vertices go onto the surface, edges are flipped to Delaunay, the worst triangles polished, apexes and ridges fitted,

@@ -79,8 +79,8 @@ class FieldSampler final : public Sampler {
 
 class PointSampler final : public Sampler {
  public:
-  PointSampler(Shape shape, const Kernels& kernels, ExecutionContext& context)
-      : Sampler(std::move(shape), kernels), spacing_(evenmesh::point_spacing(cloud(), context)) {}
+  PointSampler(Shape shape, const Vec3& origin, const Kernels& kernels, ExecutionContext& context)
+      : Sampler(std::move(shape), origin, kernels), spacing_(evenmesh::point_spacing(cloud(), context)) {}
 
   bool has_inside() const override { return false; }
   double solidity(ExecutionContext&) const override { return 0; }
@@ -152,7 +152,7 @@ Box tight_bounds(const Shape& compound, ExecutionContext& context) {
   return common(compound.bounds, Box{box.lo - Vec3{h, h, h}, box.hi + Vec3{h, h, h}});
 }
 
-Shape bounded(Shape shape, const std::optional<Box>& bounds, StageTimer& timer, ExecutionContext& context) {
+Shape bounded(Shape shape, const std::optional<Box>& bounds, StageTimer& timer) {
   if (bounds && shape.compound()) {
     shape = intersect({shape, shape_from_box(*bounds)});
   } else if (bounds) {
@@ -161,12 +161,14 @@ Shape bounded(Shape shape, const std::optional<Box>& bounds, StageTimer& timer, 
   } else if (shape.bounds.empty()) {
     shape.bounds = timer.stage("sample", 0, [&] { return find_bounds(shape); });
   }
-  if (shape.compound()) shape.bounds = timer.stage("sample", 0.02, [&] { return tight_bounds(shape, context); });
+  return shape;
+}
+
+void require_sensible_size(const Shape& shape) {
   const double longest = shape.bounds.longest_side();
   if (longest > 0 && !(longest >= smallest_model && longest <= largest_model))
     throw UnusableInput(fmt::format("the longest side measures {:.3g}: scale it to lie between {:g} and {:g}", longest,
                                     smallest_model, largest_model));
-  return shape;
 }
 
 }  // namespace
@@ -185,14 +187,18 @@ std::unique_ptr<Projector> Sampler::projector(const SampleSet&, ExecutionContext
 
 std::unique_ptr<Sampler> make_sampler(const Shape& shape, const std::optional<Box>& bounds, const Kernels& kernels,
                                       StageTimer& timer, ExecutionContext& context) {
-  Shape whole = bounded(shape, bounds, timer, context);
-  if (whole.mesh()) return std::make_unique<MeshSampler>(std::move(whole), kernels);
+  Shape whole = bounded(shape, bounds, timer);
+  const Vec3 origin = local_origin(whole.bounds);
+  if (origin != Vec3{}) whole = counted_from(origin, whole);
+  if (whole.compound()) whole.bounds = timer.stage("sample", 0.02, [&] { return tight_bounds(whole, context); });
+  require_sensible_size(whole);
+  if (whole.mesh()) return std::make_unique<MeshSampler>(std::move(whole), origin, kernels);
   if (whole.points())
     return timer.stage("voxelize", 0,
-                       [&] { return std::make_unique<PointSampler>(std::move(whole), kernels, context); });
-  if (whole.compound()) return std::make_unique<CompoundSampler>(std::move(whole), kernels);
-  if (whole.ray_source()) return std::make_unique<RaySampler>(std::move(whole), kernels);
-  return std::make_unique<FieldSampler>(std::move(whole), kernels);
+                       [&] { return std::make_unique<PointSampler>(std::move(whole), origin, kernels, context); });
+  if (whole.compound()) return std::make_unique<CompoundSampler>(std::move(whole), origin, kernels);
+  if (whole.ray_source()) return std::make_unique<RaySampler>(std::move(whole), origin, kernels);
+  return std::make_unique<FieldSampler>(std::move(whole), origin, kernels);
 }
 
 }  // namespace evenmesh

@@ -12,6 +12,7 @@
 #include "pipeline/kernels.h"
 #include "pipeline/stage_timer.h"
 #include "sample/projector.h"
+#include "shape/local_origin.h"
 #include "shape/non_finite.h"
 
 namespace evenmesh {
@@ -28,13 +29,19 @@ struct VoxelPlan {
 /// Callable from one thread at a time; uses several itself.
 class Sampler {
  public:
-  Sampler(Shape shape, const Kernels& kernels) : shape_(std::move(shape)), kernels_(kernels), non_finite_(shape_) {}
+  /// @param shape  counted from the origin
+  Sampler(Shape shape, const Vec3& origin, const Kernels& kernels)
+      : shape_(std::move(shape)), origin_(origin), kernels_(kernels), non_finite_(shape_) {}
   virtual ~Sampler() = default;
   Sampler(const Sampler&) = delete;
   Sampler& operator=(const Sampler&) = delete;
 
   const std::string& name() const { return shape_.name; }
   const Box& bounds() const { return shape_.bounds; }
+  /// Where the sampler's coordinates, which are all that the pipeline sees, begin in the caller's (local_origin.h).
+  const Vec3& origin() const { return origin_; }
+  /// How far points may be off, since the shape knows them in single precision only; model units.
+  double rounding() const { return rounding_of(shape_, origin_); }
   /// Closing the solid where the bounds cut it is part of the shape's definition.
   bool capped_by_bounds() const { return shape_.capped_by_bounds; }
 
@@ -71,6 +78,7 @@ class Sampler {
   Shape shape_;
 
  private:
+  Vec3 origin_;
   Kernels kernels_;
   NonFiniteValues non_finite_;
 };

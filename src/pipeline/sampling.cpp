@@ -5,6 +5,19 @@
 #include "sample/dexels.h"
 
 namespace evenmesh {
+namespace {
+
+/// Where the shape itself is not known well enough.
+void say_rounding(const Sampler& sampler, Sampling& sampling) {
+  constexpr double noticed = 1e-3;  // edges
+  const double rounding = sampler.rounding(), edges = rounding / sampling.sizing.mean();
+  if (edges > noticed)
+    sampling.findings.push_back(make_finding(FindingCode::single_precision,
+                                             {{"name", sampler.name()}, {"rounding", rounding}, {"edges", edges}}));
+}
+
+}  // namespace
+
 double apply_density(Sampling& sampling, const Density& density, ExecutionContext& context) {
   if (sampling.sheet) {
     SampleSet& drawn = sampling.sheet->on_surface;
@@ -35,6 +48,7 @@ Sampling sample(const Sampler& sampler, Plan plan, const MeshOptions& options, S
   const double vertices = static_cast<double>(sampling.plan.vertices);
   sampling.sizing = sampling.sizing.with_mean(edge_length_of(sampling.samples.total_area, vertices));
   sampling.sampled = sampling.samples.size();
+  say_rounding(sampler, sampling);
   if (route == Route::solid) {
     sampling.disagreements = sampling.samples.disagreements;
     sampling.unresolved = sampling.samples.unresolved;

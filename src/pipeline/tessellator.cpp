@@ -13,6 +13,7 @@
 #include "cvt/starts.h"
 #include "evenmesh/error.h"
 #include "features/crowding.h"
+#include "features/followable.h"
 #include "features/long_curves.h"
 #include "grid/surface_components.h"
 #include "topology/closing.h"
@@ -39,18 +40,6 @@ RelaxOptions relax_options(const MeshOptions& options, bool rugged) {
   return relax;
 }
 
-/// Why sharp edges are not to be followed; empty: they are.
-std::string reason_against(const FeatureCurves& features, std::size_t fixed, const SampleSet& samples,
-                           std::size_t vertices) {
-  constexpr std::size_t many_corners = 100;
-  if (10 * samples.disagreements > samples.size())
-    return "inside and outside were settled by vote in too many places to tell them from noise";
-  // A web of edges as fine as the mesh is noise.
-  const bool web = features.corners.size() > many_corners && 2 * features.corners.size() > fixed;
-  if (web || 2 * fixed > vertices) return "there are too many for meshes this coarse to follow: ask for more vertices";
-  return {};
-}
-
 }  // namespace
 
 Tessellator::Tessellator(Sampling sampling, const MeshOptions& o, const Kernels& kernels, StageTimer& t,
@@ -74,21 +63,33 @@ double Tessellator::edge() const {
 
 void Tessellator::find_features() {
   if (!options.feature_angle || result.sampling.plan.route != Route::solid) return;
+  const SampleSet& samples = result.sampling.samples;
   const double edge = result.sampling.sizing.mean();
+  // Then noise cannot be told from edges.
+  const bool settled_by_vote = 10 * samples.disagreements > samples.size();
+  std::size_t found = 0;
   timer.stage("features", 0.01, [&] {
-    result.features = find_feature_curves(result.sampling.samples, *options.feature_angle, edge, context);
+    FeatureCurves all = find_feature_curves(samples, *options.feature_angle, edge, context);
+    found = all.curves.size() + all.left_out.size();
+    if (settled_by_vote) {
+      all = without_curves(all, std::vector<char>(all.curves.size(), 1));
+      all.apexes.clear();
+    }
+    result.features = followable(all, edge, wanted() / 2);
     result.feature_seeds = place_feature_seeds(result.features, edge);
   });
   context.log(fmt::format("features: {} curves, {} corners, {} seeds", result.features.curves.size(),
                           result.features.corners.size(), fixed()));
   if (result.sampling.hidden_area > 0) keep_long_features(edge);
-  const std::string reason = reason_against(result.features, fixed(), result.sampling.samples, wanted());
-  if (reason.empty()) return;
-  if (const std::size_t count = result.features.curves.size(); count > 0)
-    result.sampling.findings.push_back(
-        make_finding(FindingCode::features_not_followed, {{"count", static_cast<double>(count)}, {"reason", reason}}));
-  result.features = {};
-  result.feature_seeds = {};
+  const std::vector<Vec3>& left_out = result.features.left_out;
+  if (left_out.empty()) return;
+  const char* reason =
+      settled_by_vote ? "inside and outside were settled by vote in too many places to tell them from noise"
+                      : "too short, too near to each other or too many for meshes this coarse: ask for more vertices";
+  result.sampling.findings.push_back(make_finding(
+      FindingCode::features_not_followed,
+      {{"count", static_cast<double>(left_out.size())}, {"all", static_cast<double>(found)}, {"reason", reason}},
+      left_out.front()));
 }
 
 void Tessellator::keep_long_features(double edge) {

@@ -7,28 +7,44 @@
 #include <vector>
 
 #include "evenmesh/error.h"
+#include "shape/local_origin.h"
 
 namespace evenmesh {
 namespace {
 
 class AffineField final : public Field {
  public:
-  AffineField(std::shared_ptr<const Field> field, const Affine& back) : field_(std::move(field)), back_(back) {}
+  /// @param precisely  ask the field in double precision
+  AffineField(std::shared_ptr<const Field> field, const Affine& back, bool precisely = false)
+      : field_(std::move(field)), back_(back), precisely_(precisely) {}
 
   void evaluate(const PointBatch& points, std::span<float> values) const override {
+    if (precisely_) {
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = static_cast<float>(field_->evaluate(back_(point(points, i)), nullptr));
+      return;
+    }
     const Moved moved(points, back_);
     field_->evaluate(moved.batch(), values);
   }
   void evaluate_gradient(const PointBatch& points, std::span<float> values, std::span<float> dx, std::span<float> dy,
                          std::span<float> dz) const override {
-    const Moved moved(points, back_);
-    field_->evaluate_gradient(moved.batch(), values, dx, dy, dz);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const Vec3 g = gradient({dx[i], dy[i], dz[i]});
+    const auto put = [&](std::size_t i, const Vec3& g) {
       dx[i] = static_cast<float>(g.x);
       dy[i] = static_cast<float>(g.y);
       dz[i] = static_cast<float>(g.z);
+    };
+    if (precisely_) {
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        Vec3 g;
+        values[i] = static_cast<float>(evaluate(point(points, i), &g));
+        put(i, g);
+      }
+      return;
     }
+    const Moved moved(points, back_);
+    field_->evaluate_gradient(moved.batch(), values, dx, dy, dz);
+    for (std::size_t i = 0; i < values.size(); ++i) put(i, gradient({dx[i], dy[i], dz[i]}));
   }
   Interval evaluate(const Box& box) const override { return field_->evaluate(transformed_box(box, back_)); }
   void enclose(std::span<const Box> boxes, std::span<Interval> ranges) const override {
@@ -48,19 +64,25 @@ class AffineField final : public Field {
   }
   std::shared_ptr<const Field> specialized(const Box& box) const override {
     std::shared_ptr<const Field> inner = field_->specialized(transformed_box(box, back_));
-    return inner ? std::make_shared<AffineField>(std::move(inner), back_) : nullptr;
+    return inner ? std::make_shared<AffineField>(std::move(inner), back_, precisely_) : nullptr;
   }
-  double epsilon() const override {
-    return field_->epsilon() / std::cbrt(std::max(1e-300, std::abs(back_.determinant())));
-  }
+  double epsilon() const override { return field_->epsilon() / scale(); }
   bool has_gradient() const override { return field_->has_gradient(); }
+  bool is_precise() const override { return field_->is_precise(); }
 
   const std::shared_ptr<const Field>& inner() const { return field_; }
+  const Affine& back() const { return back_; }
+  bool precisely() const { return precisely_; }
+  /// Lengths of the field within per length outside.
+  double scale() const { return std::cbrt(std::max(1e-300, std::abs(back_.determinant()))); }
   std::shared_ptr<const Field> around(std::shared_ptr<const Field> field) const {
-    return std::make_shared<AffineField>(std::move(field), back_);
+    const bool precisely = precisely_ && field->is_precise();
+    return std::make_shared<AffineField>(std::move(field), back_, precisely);
   }
 
  private:
+  static Vec3 point(const PointBatch& points, std::size_t i) { return {points.x[i], points.y[i], points.z[i]}; }
+
   struct Moved {
     std::vector<float> x, y, z;
     Moved(const PointBatch& points, const Affine& by) : x(points.x.size()), y(x.size()), z(x.size()) {
@@ -79,6 +101,7 @@ class AffineField final : public Field {
 
   std::shared_ptr<const Field> field_;
   Affine back_;
+  bool precisely_;
 };
 
 /// Signed distance from the nearest of a box's planes, negative within it, and the axis and sign of its gradient.
@@ -141,8 +164,10 @@ class BoxedField final : public Field {
   }
   double epsilon() const override { return field_->epsilon(); }
   bool has_gradient() const override { return field_->has_gradient(); }
+  bool is_precise() const override { return field_->is_precise(); }
 
   const std::shared_ptr<const Field>& inner() const { return field_; }
+  const Box& box() const { return box_; }
   std::shared_ptr<const Field> around(std::shared_ptr<const Field> field) const {
     return std::make_shared<BoxedField>(std::move(field), box_);
   }
@@ -172,6 +197,27 @@ std::shared_ptr<const Field> boxed_field(std::shared_ptr<const Field> field, con
 
 std::shared_ptr<const Field> transformed_field(std::shared_ptr<const Field> field, const Affine& transform) {
   return std::make_shared<AffineField>(std::move(field), transform.inverse());
+}
+
+std::shared_ptr<const Field> shifted_field(std::shared_ptr<const Field> field, const Vec3& by, const Box& where) {
+  if (const auto* boxed = dynamic_cast<const BoxedField*>(field.get()))
+    return boxed_field(shifted_field(boxed->inner(), by, where), Box{boxed->box().lo - by, boxed->box().hi - by});
+  Affine back = Affine::translate(by);
+  while (const auto* moved = dynamic_cast<const AffineField*>(field.get())) {
+    back = moved->back().after(back);
+    field = std::shared_ptr<const Field>(moved->inner());
+  }
+  const bool far = local_origin(transformed_box(where, back)) != Vec3{};
+  const bool precisely = far && field->is_precise();
+  return std::make_shared<AffineField>(std::move(field), back, precisely);
+}
+
+double rounding_of(const Field& field, const Box& where) {
+  if (const auto* boxed = dynamic_cast<const BoxedField*>(&field)) return rounding_of(*boxed->inner(), where);
+  const auto* moved = dynamic_cast<const AffineField*>(&field);
+  if (moved && moved->precisely()) return 0;
+  if (moved) return rounding_of(*moved->inner(), transformed_box(where, moved->back())) / moved->scale();
+  return local_origin(where) == Vec3{} ? 0 : single_rounding(where);
 }
 
 std::shared_ptr<const Field> with_innermost(const std::shared_ptr<const Field>& field, const Replacement& replace) {

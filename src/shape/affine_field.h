@@ -15,6 +15,15 @@ std::shared_ptr<const Field> transformed_field(std::shared_ptr<const Field> fiel
 /// The solid f < 0 within a box, that is closed by its faces.
 std::shared_ptr<const Field> boxed_field(std::shared_ptr<const Field> field, const Box& box);
 
+/// f(p + by), as precise as f can be within a box: motions around f become one, and where the points that f is asked at
+/// lie far from its origin nevertheless, it is asked in double precision if it knows that. Cost: then some nanoseconds
+/// per point and operation.
+/// @param where  box of the points p
+std::shared_ptr<const Field> shifted_field(std::shared_ptr<const Field> field, const Vec3& by, const Box& where);
+/// How far points within the box may lie from where f takes them to be, in its units: 0 where it is asked near its
+/// origin, or in double precision.
+double rounding_of(const Field& field, const Box& where);
+
 /// What takes the place of a field.
 using Replacement = std::function<std::shared_ptr<const Field>(const std::shared_ptr<const Field>&)>;
 

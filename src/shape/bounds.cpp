@@ -17,6 +17,7 @@ namespace evenmesh {
 namespace {
 
 constexpr int largest_exponent = 20, smallest_exponent = -20;  ///< half sides of the cubes, as powers of two
+constexpr int farthest_exponent = 26;                          ///< of survey coordinates
 constexpr int shell_depth = 5;                                 ///< subdivisions of a shell's 56 cells
 constexpr int shrink_depth = 6;                                ///< 64 cells along each side
 constexpr double enough = 0.7;                                 ///< shrinking stops when a side keeps more than this
@@ -121,18 +122,28 @@ std::vector<Cell> cells_of_shell(double half) {
   throw UnusableInput(message);
 }
 
+/// The first cube that has something in its shell, and what; where all shells are proved outside, the last one.
+struct FirstShell {
+  int exponent;
+  Seen seen;
+};
+FirstShell first_shell(const Field& field, int from, int last) {
+  for (int exponent = from; exponent > last; --exponent)
+    if (const Seen seen = seen_in(field, cells_of_shell(std::ldexp(1.0, exponent - 1))); seen != Seen::outside)
+      return {exponent, seen};
+  return {last, Seen::outside};
+}
+
 /// Half side of a cube that holds the solid; none where that cannot be proved, though the solid does not show itself
 /// far out.
 std::optional<double> half_side_of_cube(const Field& field) {
-  for (int exponent = largest_exponent; exponent > smallest_exponent; --exponent) {
-    const double half = std::ldexp(1.0, exponent - 1);
-    const Seen seen = seen_in(field, cells_of_shell(half));
-    if (seen == Seen::outside) continue;
-    if (exponent < largest_exponent) return 2 * half;
-    if (seen == Seen::solid) throw_unbounded(field);
-    return {};
-  }
-  return std::ldexp(1.0, smallest_exponent);
+  const FirstShell far = first_shell(field, farthest_exponent, largest_exponent);
+  if (far.seen != Seen::outside && far.exponent < farthest_exponent) return std::ldexp(1.0, far.exponent);
+  const FirstShell near = first_shell(field, largest_exponent, smallest_exponent);
+  const bool undecided = near.exponent == largest_exponent && far.exponent == farthest_exponent;
+  if (undecided && near.seen == Seen::solid) throw_unbounded(field);
+  if (undecided) return {};
+  return std::ldexp(1.0, near.exponent);
 }
 
 /// Adds the cells of the last subdivision on which f ≥ 0 is not proved. Cells within `found` cannot add anything.
@@ -179,7 +190,8 @@ Box find_bounds(const Field& field) {
     return box;
   }
   throw UnusableInput(
-      "f < 0 nowhere found: the solid is empty, or too small; inside is where the expression is negative");
+      "f < 0 nowhere found: the solid is empty, or too small for as far away as it is (then give --bounds "
+      "x0,y0,z0,x1,y1,z1); inside is where the expression is negative");
 }
 
 namespace {

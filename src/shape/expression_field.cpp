@@ -101,6 +101,7 @@ class GraphField final : public Field {
     return gradient ? value_and_gradient(point, *gradient) : value(point);
   }
 
+  bool is_precise() const override { return true; }
   std::shared_ptr<const Field> specialized(const Box& box) const override;
 
   const ExpressionGraph& graph() const { return graph_; }

@@ -57,6 +57,9 @@ class Field {
   /// f and its gradient at one point in double precision; gradient may be null. The default rounds through evaluate().
   virtual double evaluate(const Vec3& point, Vec3* gradient) const;
 
+  /// Whether the value at one point really is in double precision.
+  virtual bool is_precise() const { return false; }
+
   /// A cheaper field with the same bits at every point of `box` (branches of min, max and abs decided), or nullptr when
   /// nothing is gained. Cost: one interval evaluation and one compilation, worth it from some thousand points on.
   virtual std::shared_ptr<const Field> specialized(const Box& box) const;

@@ -54,6 +54,7 @@ class Indicator final : public Field {
   }
 
   bool has_gradient() const override { return false; }
+  bool is_precise() const override { return true; }
 
  private:
   std::function<bool(const Vec3&)> inside_;

@@ -60,6 +60,21 @@ TEST_F(Jobs, WritesEveryFormat) {
   }
 }
 
+TEST_F(Jobs, SurveyCoordinatesStayExactInEveryFormat) {
+  write("far.csg",
+        "multmatrix([[1, 0, 0, 691003.37], [0, 1, 0, 5336001.21], [0, 0, 1, 519.3], [0, 0, 0, 1]]) { cube(size = "
+        "[1, 2, 0.5], center = false); }\n");
+  for (const char* format : {"ply", "obj", "stl", "off", "glb", "3mf"}) {
+    const std::string name = std::string("far.") + format;
+    const Outcome outcome = run({"mesh", "far.csg", "-n", "300", "-o", name});
+    ASSERT_EQ(outcome.status, 0) << name << ' ' << outcome.err;
+    const Json figures = Json::parse(info(name));
+    expect_sound(figures);
+    EXPECT_NEAR(figures.at("volume").get<double>(), 1, 1e-5) << name;
+    EXPECT_NEAR(figures.at("area").get<double>(), 7, 1e-4) << name;
+  }
+}
+
 TEST_F(Jobs, StreamsInAndOut) {
   const Outcome first = run({"mesh", "-", "-n", "200", "-o", "-"}, {.input = tetrahedron_obj});
   ASSERT_EQ(first.status, 0) << first.err;

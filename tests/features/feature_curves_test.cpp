@@ -9,6 +9,7 @@
 #include "features/apexes.h"
 #include "features/crowding.h"
 #include "features/feature_seeds.h"
+#include "features/followable.h"
 #include "geometry/primitives.h"
 #include "shape/expression_field.h"
 
@@ -87,7 +88,7 @@ TEST(FeatureCurves, TipsOfConesAreWhereTheyComeToAPoint) {
 TEST(Tips, AreNotAlongCreasesThatNobodyFollows) {
   evenmesh::ExecutionContext context(2);
   const SampleSet samples = sampled_gallery("cube", 64);
-  const FeatureGraph graph = find_feature_graph(samples, std::cos(0.7), std::cos(0.5), context);
+  const FeatureGraph graph = find_feature_graph(samples, 40, context);
   const std::vector<Vec3> apexes = find_apexes(samples, graph.nodes, {}, 40, 0.3, context);
   EXPECT_EQ(apexes.size(), 8u);
   for (const Vec3& apex : apexes)
@@ -101,6 +102,46 @@ TEST(FeatureCurves, AreTheSameForAnyNumberOfThreads) {
   ASSERT_EQ(one.curves.size(), two.curves.size());
   EXPECT_GT(one.curves.size(), 0u);
   for (std::size_t c = 0; c < one.curves.size(); ++c) EXPECT_EQ(one.curves[c].points, two.curves[c].points);
+}
+
+/// A curve of three points.
+FeatureCurve line(std::uint32_t from, std::uint32_t to, const Vec3& a, const Vec3& b) {
+  const double length = norm(b - a);
+  return {from, to, {a, 0.5 * (a + b), b}, {0, 0.5 * length, length}};
+}
+
+TEST(Followable, ShortCurvesGoFirstAndStraightOnesCountTogether) {
+  // One line of 20 edges in 20 pieces, and two spurs at every joint, half an edge long.
+  FeatureCurves features;
+  for (int i = 0; i <= 20; ++i) features.corners.push_back({double(i), 0, 0});
+  for (std::uint32_t i = 0; i < 20; ++i)
+    features.curves.push_back(line(i, i + 1, features.corners[i], features.corners[i + 1]));
+  for (std::uint32_t i = 1; i < 20; ++i)
+    for (const double y : {-0.5, 0.5}) {
+      const auto tip = static_cast<std::uint32_t>(features.corners.size());
+      features.corners.push_back({double(i), y, 0});
+      features.curves.push_back(line(i, tip, features.corners[i], features.corners[tip]));
+    }
+  const FeatureCurves all = followable(features, 1, 100), some = followable(features, 1, 50);
+  EXPECT_EQ(all.curves.size(), 58u);
+  EXPECT_TRUE(all.left_out.empty());
+  EXPECT_EQ(some.curves.size(), 20u);
+  EXPECT_EQ(some.corners.size(), 21u);
+  ASSERT_EQ(some.left_out.size(), 38u);
+  for (const Vec3& p : some.left_out) EXPECT_EQ(std::abs(p.y), 0.25);
+  EXPECT_TRUE(followable(features, 1, 10).curves.empty());
+}
+
+TEST(FeatureCurves, FoundTwiceCountOnce) {
+  FeatureCurves features;
+  features.corners = {{0, 0, 0}, {1, 0, 0}};
+  features.curves.push_back(line(0, 1, features.corners[0], features.corners[1]));
+  features.curves.push_back(line(0, 1, {0, 0.01, 0}, {0.99, 0.01, 0}));
+  features.curves.push_back(line(0, 1, {0, 0.5, 0}, {1, 0.5, 0}));
+  const FeatureCurves once = without_repeated(features, 0.02);
+  ASSERT_EQ(once.curves.size(), 2u);
+  EXPECT_EQ(once.curves[0].length(), 1) << "the longest stays";
+  EXPECT_TRUE(once.left_out.empty());
 }
 
 TEST(FeatureSeeds, AreEvenlySpacedAndNeighboursInTheDual) {

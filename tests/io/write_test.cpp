@@ -46,6 +46,24 @@ TEST(Write, CoordinatesComeBackAsTheNearestFloat) {
   }
 }
 
+TEST(Write, CoordinatesFarAwayKeepTheirDigits) {
+  const Vec3 away{400000.123456789, 5000000.0625, -0.3};
+  Mesh mesh = tetrahedron();
+  for (Vec3& v : mesh.vertices) v = 0.05 * v + away;
+  for (const MeshFormat format : all_formats) {
+    SCOPED_TRACE(static_cast<int>(format));
+    const std::vector<Vec3> stored = stored_vertices(mesh, format);
+    const Mesh again = parse_mesh(serialize_mesh(mesh, format), "again");
+    ASSERT_EQ(again.triangles.size(), mesh.triangles.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 &found = again.vertices[again.triangles[t][k]], &given = mesh.vertices[mesh.triangles[t][k]];
+        EXPECT_LT(norm(found - given), format == MeshFormat::glb ? 1e-8 : 1e-300);
+        EXPECT_EQ(found, stored[mesh.triangles[t][k]]);
+      }
+  }
+}
+
 TEST(Write, RefusesWhatCannotBeReadBack) {
   Mesh mesh = tetrahedron();
   mesh.vertices[1].x = 1e300;

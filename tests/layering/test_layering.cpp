@@ -57,6 +57,7 @@ const std::map<std::string, std::string> public_headers{
     {"names.h", "jobs"},
     {"options_json.h", "jobs"},
     {"repaired.h", "jobs"},
+    {"written.h", "jobs"},
     {"set_operation.h", "jobs"},
 };
 

@@ -1,5 +1,7 @@
 /// Sharp edges of solids: the mesh has edges there.
 
+#include "core/random.h"
+#include "evenmesh/solid.h"
 #include "pipeline/pipeline_testing.h"
 
 namespace evenmesh {
@@ -93,6 +95,43 @@ TEST(Features, TipsOfConesHaveAVertex) {
       EXPECT_LT(nearest, 0.01 * result.report.quality.edge_length_avg) << vertices;
     }
   }
+}
+
+TEST(Features, OfABoxStayWhereItsKnobsAreTooSmall) {
+  // 64 knobs, each of them smaller than an edge.
+  const Shape shape = shape_from_expression(
+      "min(max(max(abs(x) - 1, abs(y) - 1), abs(z) - 0.5), max(max(max(abs(mod(x, 0.2) - 0.1) - 0.05, abs(mod(y, 0.2) "
+      "- "
+      "0.1) - 0.05), max(abs(x), abs(y)) - 0.8), abs(z - 0.5) - 0.1))",
+      {}, Box{{-1.1, -1.1, -0.7}, {1.1, 1.1, 0.7}});
+  const MeshResult result = meshed(shape, {.vertices = 1000});
+  expect_good_mesh(result);
+  EXPECT_NEAR(result.report.crease_length, 8 * 2 + 4 * 1, 1e-3);
+  const auto said = std::find_if(result.report.findings.begin(), result.report.findings.end(),
+                                 [](const Finding& f) { return f.code == FindingCode::features_not_followed; });
+  ASSERT_NE(said, result.report.findings.end());
+  EXPECT_EQ(said->values[0], (std::pair<std::string, FindingValue>("count", 64 * 12.0)));
+  ASSERT_TRUE(said->place);
+  EXPECT_LT(std::max(std::abs(said->place->x), std::abs(said->place->y)), 0.85) << "on a knob";
+}
+
+/// A ball whose facets stand at random angles, as scans have them.
+Mesh rough_ball() {
+  Mesh ball = make_icosphere(4);
+  Random random(5);
+  for (Vec3& v : ball.vertices) v = v * (1 + 0.008 * random.gaussian());
+  return ball;
+}
+
+TEST(Features, NoiseIsNone) {
+  for (const std::size_t vertices : {3000u, 12000u})
+    EXPECT_EQ(meshed(shape_from_mesh(rough_ball()), {.vertices = vertices}).report.crease_vertices, 0u) << vertices;
+}
+
+TEST(Features, AreFoundBesideNoise) {
+  const Shape cut = subtract(shape_from_mesh(rough_ball()), {shape_from_box({{-2, -2, 0.3}, {2, 2, 2}})});
+  const double rim = 2 * std::numbers::pi * std::sqrt(1 - 0.3 * 0.3);
+  EXPECT_NEAR(meshed(cut, {.vertices = 3000}).report.crease_length, rim, 0.1 * rim);
 }
 
 TEST(Features, SmoothShapesDoNotChange) {

@@ -9,7 +9,7 @@ namespace {
 
 TEST(Findings, AreNamedOnceAndInKebabCase) {
   std::set<std::string_view> names;
-  for (int code = 0; code <= static_cast<int>(FindingCode::unit_lost); ++code) {
+  for (int code = 0; code <= static_cast<int>(FindingCode::stl_as_text); ++code) {
     const std::string_view name = finding_name(static_cast<FindingCode>(code));
     EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz-"), std::string_view::npos) << name;
     EXPECT_TRUE(names.insert(name).second) << name;

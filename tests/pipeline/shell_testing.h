@@ -7,6 +7,7 @@
 
 #include "core/random.h"
 #include "geometry/half_edges.h"
+#include "geometry/single_precision.h"
 #include "pipeline/pipeline_testing.h"
 
 namespace evenmesh {
@@ -17,10 +18,9 @@ inline MeshOptions by_shell(std::size_t vertices, std::size_t resolution = 0) {
   return options;
 }
 
-/// The mesh as files hold it, in single precision.
+/// The mesh as files hold it.
 inline Mesh as_written(Mesh mesh) {
-  for (Vec3& v : mesh.vertices)
-    for (int a = 0; a < 3; ++a) v[a] = static_cast<float>(v[a]);
+  if (fits_single_precision(mesh)) mesh.vertices = in_single_precision(mesh.vertices);
   return mesh;
 }
 
