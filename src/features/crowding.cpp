@@ -13,27 +13,48 @@ constexpr Index none = FeatureCurve::none;
 
 class Crowding {
  public:
-  Crowding(const FeatureCurves& features, double reach) : features_(features), reach_(reach), points_(reach) {
+  Crowding(const FeatureCurves& features, std::span<const FeatureNode> nodes, double spacing, double reach)
+      : features_(features), nodes_(nodes), reach_(reach), points_(reach) {
+    PointHash near(2 * spacing);
+    for (const FeatureNode& node : nodes) near.add(node.place);
     for (Index c = 0; c < features.curves.size(); ++c)
       for (Index p = 0; p < features.curves[c].points.size(); ++p) {
-        places_.push_back({c, p});
-        points_.add(features.curves[c].points[p]);
+        const Vec3& at = features.curves[c].points[p];
+        places_.push_back({c, p, nearest(near, at, 2 * spacing)});
+        points_.add(at);
       }
   }
 
   FeatureCurves resolved() const {
     std::vector<char> doomed(features_.curves.size());
-    for (Index c = 0; c < features_.curves.size(); ++c) doomed[c] = is_crowded(c);
+    std::size_t first = 0;
+    for (Index c = 0; c < features_.curves.size(); ++c) {
+      doomed[c] = is_crowded(c, first);
+      first += features_.curves[c].points.size();
+    }
     return without_curves(features_, doomed);
   }
 
  private:
   struct Place {
-    Index curve, point;
+    Index curve, point, node;  ///< node: the nearest one; none: none is near
   };
 
+  static Index nearest(const PointHash& nodes, const Vec3& p, double reach) {
+    Index best = none;
+    double least = reach * reach;
+    nodes.near(p, reach, [&](std::uint32_t i) {
+      if (const double d = squared_norm(nodes[i] - p); d < least) {
+        least = d;
+        best = i;
+      }
+    });
+    return best;
+  }
+
   /// Whether a third of the curve's points, not counting those near its ends, have others beside them.
-  bool is_crowded(Index c) const {
+  /// @param first  its first place
+  bool is_crowded(Index c, std::size_t first) const {
     const FeatureCurve& curve = features_.curves[c];
     std::size_t asked = 0, crowded = 0;
     for (Index p = 0; p < curve.points.size(); ++p) {
@@ -41,22 +62,29 @@ class Crowding {
                                                    norm(curve.points[p] - curve.points.back()) < 1.5 * reach_);
       if (!near_end) {
         ++asked;
-        crowded += has_other_beside({c, p});
+        crowded += is_crowded(places_[first + p]);
       }
     }
     return 3 * crowded > asked;
   }
-  bool has_other_beside(Place p) const {
+  /// Others run beside it, none of them on the other rim of a thin part.
+  bool is_crowded(const Place& p) const {
     const FeatureCurve& curve = features_.curves[p.curve];
-    return points_.near(curve.points[p.point], reach_, [&](std::uint32_t i) {
-      const Place q = places_[i];
+    bool others = false;
+    const bool rim = points_.near(curve.points[p.point], reach_, [&](std::uint32_t i) {
+      const Place& q = places_[i];
       const double along =
           std::abs(curve.arc[p.point] - curve.arc[std::min<std::size_t>(q.point, curve.arc.size() - 1)]);
-      return q.curve != p.curve || std::min(along, curve.length() - along) > 4 * reach_;
+      if (q.curve == p.curve && std::min(along, curve.length() - along) <= 4 * reach_) return false;
+      others = true;
+      if (p.node == none || q.node == none) return false;
+      return face_apart(nodes_[p.node], nodes_[q.node], normalized(points_[i] - curve.points[p.point]));
     });
+    return others && !rim;
   }
 
   const FeatureCurves& features_;
+  std::span<const FeatureNode> nodes_;
   double reach_;
   std::vector<Place> places_;
   PointHash points_;  ///< at the places
@@ -64,8 +92,9 @@ class Crowding {
 
 }  // namespace
 
-FeatureCurves without_crowded(const FeatureCurves& features, double reach) {
-  return Crowding(features, reach).resolved();
+FeatureCurves without_crowded(const FeatureCurves& features, std::span<const FeatureNode> nodes, double spacing,
+                              double reach) {
+  return Crowding(features, nodes, spacing, reach).resolved();
 }
 
 FeatureCurves without_curves(const FeatureCurves& features, const std::vector<char>& doomed) {

@@ -133,7 +133,7 @@ FeatureCurves find_feature_curves(const SampleSet& samples, double angle, double
   if (graph.nodes.empty()) return {};
   const FeatureNetwork network = find_feature_network(graph, samples.grid.origin, samples.grid.spacing, edge);
   const FeatureCurves all = Chains(edge, samples.grid.spacing).make(network);
-  FeatureCurves features = without_crowded(all, crowded_distance * edge);
+  FeatureCurves features = without_crowded(all, graph.nodes, samples.grid.spacing, crowded_distance * edge);
   features.apexes = find_apexes(samples, graph.nodes, features, angle, edge, context);
   return features;
 }
