@@ -106,8 +106,9 @@ class Band {
     parallel_tasks(execution, count, [&](std::size_t i) {
       counts[i] = resolve_slab(static_cast<std::uint32_t>(i), found.slabs[first_slab + i], solid.slabs[first_slab + i]);
     });
-    RayCounts sum{lost_, false};
+    RayCounts sum{lost_, {}, false};
     for (const RayCounts& c : counts) {
+      sum.lost.insert(sum.lost.end(), c.lost.begin(), c.lost.end());
       sum.unresolved += c.unresolved;
       sum.capped = sum.capped || c.capped;
     }

@@ -43,7 +43,7 @@ MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& op
   const Tessellation cells = tessellate(std::move(sampling), options, kernels, timer, context);
   const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, options, context); });
   Refined refined = refine(draft, cells, *sampler, options, timer, context);
-  return measure(std::move(refined), draft, cells, options, timer, context);
+  return measure(std::move(refined), draft, cells, *sampler, options, timer, context);
 }
 
 }  // namespace

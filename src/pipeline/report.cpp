@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "core/platform.h"
+#include "pipeline/lost_parts.h"
 
 namespace evenmesh {
 namespace {
@@ -58,8 +61,9 @@ class Judge {
   Judge(const Draft& draft, const Tessellation& cells, const MeshOptions& options, const Report& report)
       : draft_(draft), cells_(cells), options_(options), report_(report), quality_(report.quality) {}
 
-  std::vector<Finding> findings() {
+  std::vector<Finding> findings(std::vector<Finding> lost) {
     findings_ = cells_.sampling.findings;
+    findings_.insert(findings_.end(), std::make_move_iterator(lost.begin()), std::make_move_iterator(lost.end()));
     if (report_.dropped_components > 0)
       say(FindingCode::small_components_dropped, {{"count", number(report_.dropped_components)}});
     judge_topology();
@@ -112,8 +116,8 @@ class Judge {
 
 }  // namespace
 
-MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cells, const MeshOptions& options,
-                   StageTimer& timer, ExecutionContext& context) {
+MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cells, const Sampler& sampler,
+                   const MeshOptions& options, StageTimer& timer, ExecutionContext& context) {
   MeshResult result{std::move(refined.mesh), {}};
   Report& report = result.report;
   add_sampling(cells.sampling, report);
@@ -122,9 +126,12 @@ MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cell
   report.cuts += draft.cuts;
   report.self_intersections = refined.self_intersections;
   timer.stage("measure", 0.05, [&] { report.quality = measure_quality(result.mesh, context); });
+  LostParts lost = timer.stage("measure", 0,
+                               [&] { return find_lost_parts(sampler, cells.sampling, result.mesh, options, context); });
+  report.dropped_components = std::max(report.dropped_components, lost.small);
   report.seeds = report.quality.vertices;
   report.alpha = static_cast<double>(report.samples) / static_cast<double>(std::max<std::size_t>(1, report.seeds));
-  report.findings = Judge(draft, cells, options, report).findings();
+  report.findings = Judge(draft, cells, options, report).findings(std::move(lost.findings));
   report.seconds = timer.seconds();
   report.peak_memory_bytes = peak_memory_bytes();
   context.report("done", 1);

@@ -6,7 +6,7 @@
 namespace evenmesh {
 
 /// Measures the mesh, and says of it what is not as promised or asked for.
-MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cells, const MeshOptions& options,
-                   StageTimer& timer, ExecutionContext& context);
+MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cells, const Sampler& sampler,
+                   const MeshOptions& options, StageTimer& timer, ExecutionContext& context);
 
 }  // namespace evenmesh

@@ -4,6 +4,7 @@
 #include "evenmesh/error.h"
 #include "grid/density.h"
 #include "grid/surface_components.h"
+#include "grid/thin_spots.h"
 #include "pipeline/sampling.h"
 
 namespace evenmesh {
@@ -13,6 +14,11 @@ constexpr int attempts = 4;            ///< to find the resolution of a surface 
 constexpr double fractal_alpha = 150;  ///< samples per seed there
 constexpr std::size_t min_resolution = 24;
 constexpr double max_unresolved = 0.02;  ///< share of crossings: rays that graze a curved surface lose up to 1 %
+
+/// Those that were missed included.
+double whole_samples(const SampleSet& samples) {
+  return static_cast<double>(samples.size() + samples.unresolved);
+}
 
 class SolidSampling {
  public:
@@ -28,6 +34,7 @@ class SolidSampling {
     const double h = result_.samples.grid.spacing;
     const double surprise = static_cast<double>(result_.samples.size()) / (result_.plan.samples_per_h2 / (h * h));
     if (result_.plan.refinable && (surprise > 2 || surprise < 0.6)) sample_again();
+    if (result_.plan.refinable) resolve_thin_parts();
     weigh();
     if (result_.plan.small_components > 0 || surprise > 2) drop_small();
     return std::move(result_);
@@ -37,6 +44,7 @@ class SolidSampling {
   void sample() {
     const Grid grid = make_grid(sampler_.bounds(), result_.plan.grid.resolution);
     result_.samples = timer_.stage("sample", 0.1, [&] { return sampler_.sample(grid, context_); });
+    result_.thin = wide_spots(std::exchange(result_.samples.thin, {}), grid.origin, grid.spacing);
     if (!options_.fill_cavities) return;
     timer_.stage("sample", 0, [&] {
       RemainingSurface rest = fill_cavities(std::move(result_.samples), context_);
@@ -57,6 +65,35 @@ class SolidSampling {
   }
   void set_resolution(double cells) {
     result_.plan.grid.resolution = std::clamp(static_cast<std::size_t>(cells), min_resolution, max_resolution);
+  }
+
+  /// Walls and gaps that were missed need a grid point or two between their sides. First for those that all but the
+  /// thinnest tenth need, or for half of them, as long as samples are not too many.
+  void resolve_thin_parts() {
+    const double planned = static_cast<double>(result_.plan.grid.resolution);
+    const double vertices = static_cast<double>(result_.plan.vertices);
+    const double affordable = affordable_samples(vertices);
+    ThinParts parts;
+    for (int attempt = 0; attempt < attempts && !result_.thin.empty(); ++attempt) {
+      const double edge = edge_length_of(result_.samples.total_area, vertices), h = result_.samples.grid.spacing;
+      const ThinParts missed = thin_parts(result_.thin, edge);
+      if (missed.area < min_missed_area * edge * edge) break;
+      const auto cost = [&](double thickness) {
+        const double finer = cells_across_wall * h / thickness;
+        return whole_samples(result_.samples) * finer * finer;
+      };
+      const double thickness = cost(missed.least) <= affordable ? missed.least : missed.thickness;
+      if (!(cost(thickness) <= affordable)) break;
+      parts = missed;
+      set_resolution(resolution_for(thickness, result_));
+      sample();
+    }
+    if (parts.area > 0)
+      result_.findings.push_back(
+          make_finding(FindingCode::grid_refined, {{"thickness", parts.thickness},
+                                                   {"area", parts.area},
+                                                   {"resolution", static_cast<double>(result_.plan.grid.resolution)},
+                                                   {"planned", planned}}));
   }
 
   /// Smaller cells need a finer grid.
@@ -100,7 +137,8 @@ void add_findings(const Sampler& sampler, Sampling& sampling) {
     say(FindingCode::not_finite, {{"name", sampler.name()}, {"count", static_cast<double>(non_finite)}});
   if (samples.cut_by_bounds && !sampler.capped_by_bounds()) say(FindingCode::closed_by_bounds);
   const double all = static_cast<double>(samples.size() + samples.unresolved);
-  if (static_cast<double>(samples.unresolved) > max_unresolved * all)
+  // Of thin parts more is said in the end: what is known by then is whether they are missing.
+  if (sampling.thin.empty() && static_cast<double>(samples.unresolved) > max_unresolved * all)
     say(FindingCode::crossings_unresolved, {{"spacing", samples.grid.spacing},
                                             {"count", static_cast<double>(samples.unresolved)},
                                             {"all", all},

@@ -40,7 +40,7 @@ bool on_a_line(const std::vector<Vec3>& points) {
 class MeshSampler final : public Sampler {
  public:
   using Sampler::Sampler;
-  double solidity(ExecutionContext& context) const override { return evenmesh::solidity(mesh(), context); }
+  Solidity solidity(ExecutionContext& context) const override { return measure_solidity(mesh(), context); }
   double area(ExecutionContext&) const override {
     double area = 0;
     for (std::size_t t = 0; t < mesh().triangles.size(); ++t) {
@@ -83,7 +83,7 @@ class PointSampler final : public Sampler {
       : Sampler(std::move(shape), kernels), spacing_(evenmesh::point_spacing(cloud(), context)) {}
 
   bool has_inside() const override { return false; }
-  double solidity(ExecutionContext&) const override { return 0; }
+  Solidity solidity(ExecutionContext&) const override { return {}; }
   double area(ExecutionContext&) const override {
     if (on_a_line(cloud().points)) return 0;
     return 0.75 * static_cast<double>(cloud().points.size()) * spacing_ * spacing_;
@@ -119,7 +119,9 @@ class CompoundSampler final : public Sampler {
 class RaySampler final : public Sampler {
  public:
   using Sampler::Sampler;
-  double solidity(ExecutionContext& context) const override { return source().solidity(bounds(), context); }
+  Solidity solidity(ExecutionContext& context) const override {
+    return {.share = source().solidity(bounds(), context), .thickness = {}};
+  }
   double area(ExecutionContext& context) const override {
     constexpr std::size_t coarse = 128;
     return source().sample_surface(make_grid(bounds(), coarse), bounds(), context).total_area;

@@ -1,9 +1,23 @@
 #include "pipeline/sampling.h"
 
+#include <cmath>
+
 #include "grid/density.h"
 #include "sample/dexels.h"
 
 namespace evenmesh {
+
+bool Sampling::unresolvable() const {
+  double missed = 0;
+  for (const ThinSpot& spot : thin) missed += 2 * spot.area;
+  return missed > 0.1 * (missed + samples.total_area);
+}
+
+double resolution_for(double thickness, const Sampling& sampling) {
+  const double cells = static_cast<double>(sampling.plan.grid.resolution);
+  return std::ceil(1.01 * cells_across_wall * cells * sampling.samples.grid.spacing / thickness);
+}
+
 double apply_density(Sampling& sampling, const Density& density, ExecutionContext& context) {
   if (sampling.sheet) {
     SampleSet& drawn = sampling.sheet->on_surface;

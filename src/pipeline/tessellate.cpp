@@ -14,6 +14,7 @@ namespace {
 
 constexpr int seed_rounds = 12;          ///< attempts to make every cell a disk with more seeds
 constexpr int patience = 3;              ///< rounds without a fifth fewer defects until seeds are given up
+constexpr int unresolvable_rounds = 2;  ///< attempts altogether where thin walls are missing: nothing helps there
 constexpr int ball_rounds = 32;          ///< those, and attempts to change the topology where it resists
 constexpr int topology_rounds = 50;      ///< attempts altogether; the last ones divide cells down to single samples
 constexpr int sheet_rounds = 12;         ///< of sheets, which have no inside for balls
@@ -84,7 +85,8 @@ void repair_solid(Tessellator& state) {
   std::vector<Vec3> ambiguous;
   bool small_components_cleared = false, ambiguous_known = false;
   Progress progress;
-  for (int round = 0; round < topology_rounds && !state.fits(); ++round) {
+  const int rounds = cells.sampling.unresolvable() ? unresolvable_rounds : topology_rounds;
+  for (int round = 0; round < rounds && !state.fits(); ++round) {
     const std::size_t found = state.defects().size();
     const int idle = progress.idle_after(found);
     if (!ambiguous_known)

@@ -70,7 +70,8 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
       const bool was_inside = is_inside();
       winding += hits[i].step;
       if (is_inside() != was_inside) {
-        ++changes;
+        // Of two changes nothing is left; of three the last.
+        if (++changes % 2 == 0) counts.lost.push_back({hits[last], hits[i], !was_inside, 0});
         last = i;
       }
     }
@@ -81,6 +82,25 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
     out.push_back({hits[last].source, hits[last].t, cell, !inside, hits[last].synthetic});
     counts.capped = counts.capped || hits[last].synthetic;
   }
+}
+
+std::vector<ThinSpot> thin_spots(std::span<const LostPair> lost, const Grid& grid, int axis, std::uint32_t slab,
+                                 const std::function<Vec3(std::uint32_t)>& normal_of) {
+  std::vector<ThinSpot> spots;
+  const auto a = static_cast<std::size_t>(axis);
+  for (const LostPair& pair : lost) {
+    const auto place = [&](const RayHit& hit) {
+      std::array<double, 3> at{};
+      at[a] = hit.cell + double(hit.t);
+      at[static_cast<std::size_t>(dexel_p_axis[a])] = pair.ray / brick_size;
+      at[static_cast<std::size_t>(dexel_q_axis[a])] = slab * brick_size + pair.ray % brick_size;
+      return grid.point(at[0], at[1], at[2]);
+    };
+    if (const auto spot = thin_spot(place(pair.from), place(pair.to), normal_of(pair.from.source),
+                                    normal_of(pair.to.source), axis, grid.spacing, pair.gap))
+      spots.push_back(*spot);
+  }
+  return spots;
 }
 
 }  // namespace evenmesh
