@@ -14,7 +14,7 @@ constexpr Index none = FeatureCurve::none;
 class Crowding {
  public:
   Crowding(const FeatureCurves& features, std::span<const FeatureNode> nodes, double spacing, double reach)
-      : features_(features), nodes_(nodes), reach_(reach), points_(reach) {
+      : features_(features), nodes_(nodes), spacing_(spacing), reach_(reach), points_(reach) {
     PointHash near(2 * spacing);
     for (const FeatureNode& node : nodes) near.add(node.place);
     for (Index c = 0; c < features.curves.size(); ++c)
@@ -67,25 +67,35 @@ class Crowding {
     }
     return 3 * crowded > asked;
   }
+  Vec3 tangent(const Place& p) const {
+    const auto& points = features_.curves[p.curve].points;
+    const std::size_t last = points.size() - 1;
+    return normalized(points[std::min<std::size_t>(p.point + 1, last)] - points[p.point > 0 ? p.point - 1 : 0]);
+  }
   /// Others run beside it, none of them on the other rim of a thin part.
   bool is_crowded(const Place& p) const {
+    constexpr double rim_length = 6;  // of the reach: noise has short curves
+    constexpr double parallel = 0.95;
     const FeatureCurve& curve = features_.curves[p.curve];
-    bool others = false;
-    const bool rim = points_.near(curve.points[p.point], reach_, [&](std::uint32_t i) {
+    bool others = false, rim = false, same_place = false;
+    points_.near(curve.points[p.point], reach_, [&](std::uint32_t i) {
       const Place& q = places_[i];
       const double along =
           std::abs(curve.arc[p.point] - curve.arc[std::min<std::size_t>(q.point, curve.arc.size() - 1)]);
-      if (q.curve == p.curve && std::min(along, curve.length() - along) <= 4 * reach_) return false;
+      if (q.curve == p.curve && std::min(along, curve.length() - along) <= 4 * reach_) return;
       others = true;
-      if (p.node == none || q.node == none) return false;
-      return face_apart(nodes_[p.node], nodes_[q.node], normalized(points_[i] - curve.points[p.point]));
+      const Vec3 across = points_[i] - curve.points[p.point];
+      same_place |= norm(across) < spacing_;
+      if (p.node == none || q.node == none || curve.length() < rim_length * reach_) return;
+      rim |= std::abs(dot(tangent(p), tangent(q))) > parallel &&
+             face_apart(nodes_[p.node], nodes_[q.node], normalized(across));
     });
-    return others && !rim;
+    return others && (same_place || !rim);
   }
 
   const FeatureCurves& features_;
   std::span<const FeatureNode> nodes_;
-  double reach_;
+  double spacing_, reach_;
   std::vector<Place> places_;
   PointHash points_;  ///< at the places
 };

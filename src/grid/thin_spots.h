@@ -19,12 +19,13 @@ struct ThinSpot {
 };
 
 /// The spot between two neighbouring crossings of a ray; none where they belong to one side of the surface, that the
-/// ray grazes, and where two surfaces touch up to rounding: nearer than 0.005 cells.
+/// ray grazes, and of walls thinner than 0.005 cells, which are two surfaces in one place.
 /// @param normals  unit, of either orientation
 std::optional<ThinSpot> thin_spot(const Vec3& from, const Vec3& to, const Vec3& from_normal, const Vec3& to_normal,
                                   int axis, double spacing, bool gap);
 
-/// Those of the spots that make a face as wide as a brick; without those along knife edges and at tips.
+/// Those of the spots that make a face as wide as a brick: without those along knife edges and at tips, and without
+/// gaps between parts that touch.
 std::vector<ThinSpot> wide_spots(const std::vector<ThinSpot>& spots, const Vec3& origin, double spacing);
 
 /// What spots have in common. Lengths in model units.
