@@ -108,7 +108,6 @@ class Band {
     });
     RayCounts sum{lost_, {}, false};
     for (const RayCounts& c : counts) {
-      sum.lost.insert(sum.lost.end(), c.lost.begin(), c.lost.end());
       sum.unresolved += c.unresolved;
       sum.capped = sum.capped || c.capped;
     }

@@ -98,7 +98,7 @@ std::optional<ThinSpot> thin_spot(const Vec3& from, const Vec3& to, const Vec3& 
   if (facing > opposite_sides || steep < grazing) return std::nullopt;
   if (!gap && along < touching * spacing) return std::nullopt;
   return ThinSpot{0.5 * (from + to), static_cast<float>(along * steep), static_cast<float>(spacing * spacing * steep),
-                  gap};
+                  gap, false};
 }
 
 std::vector<ThinSpot> wide_spots(const std::vector<ThinSpot>& spots, const Vec3& origin, double spacing) {

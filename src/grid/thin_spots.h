@@ -10,12 +10,14 @@
 
 namespace evenmesh {
 
-/// Where a ray passes a wall of the solid, or a gap in it, within one grid edge: both crossings were left out.
+/// Where a ray passes a wall of the solid, or a gap in it, in less than a cell: within one grid edge, both crossings
+/// were left out.
 struct ThinSpot {
   Vec3 place;           ///< half way through
   float thickness = 0;  ///< across the wall or gap, model units
   float area = 0;       ///< of one of its sides that the spot stands for, see sample_area(); model units squared
   bool gap = false;
+  bool sampled = false;  ///< a grid point happens to lie between its sides
 };
 
 /// The spot between two neighbouring crossings of a ray; none where they belong to one side of the surface, that the

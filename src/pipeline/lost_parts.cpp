@@ -35,7 +35,9 @@ class Search {
   /// What the samples missed between grid points.
   void thin_parts_missed(LostParts& lost) const {
     if (sampling_.thin.empty()) return;
-    const std::vector<ThinSpot> missing = sampling_.unresolvable() ? sampling_.thin : far_from_mesh(sampling_.thin);
+    std::vector<ThinSpot> missing = sampling_.thin;
+    std::erase_if(missing, [](const ThinSpot& spot) { return spot.sampled; });
+    if (!sampling_.unresolvable()) missing = far_from_mesh(missing);
     const ThinParts parts = thin_parts(missing, edge_);
     if (parts.area < min_missed_area * edge_ * edge_) return;
     auto values = values_of(parts);
@@ -62,8 +64,11 @@ class Search {
       lost.small = whole_pieces(points, missing);
       return;
     }
+    auto values = values_of(parts);
+    values.push_back({"cure", std::string("ask for more vertices or a finer grid (-r)") +
+                                  (sampling_.closed() ? ", or for a surface (--method shell)" : "")});
     lost.findings.push_back(
-        make_finding(FindingCode::parts_lost, values_of(parts), 0.5 * (parts.largest.lo + parts.largest.hi)));
+        make_finding(FindingCode::parts_lost, std::move(values), 0.5 * (parts.largest.lo + parts.largest.hi)));
   }
 
  private:
@@ -136,7 +141,7 @@ class Search {
       u = 1 - u;
       v = 1 - v;
     }
-    return {a + u * (b - a) + v * (c - a), 0, static_cast<float>(area), false};
+    return {a + u * (b - a) + v * (c - a), 0, static_cast<float>(area), false, false};
   }
   /// By the additive recurrence of Roberts in two dimensions.
   static ThinSpot spread_over(const Mesh& mesh, std::size_t t, std::size_t number, double area) {

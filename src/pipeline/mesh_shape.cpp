@@ -4,6 +4,7 @@
 
 #include "pipeline/draft.h"
 #include "pipeline/kernels.h"
+#include "pipeline/lost_parts.h"
 #include "pipeline/plan.h"
 #include "pipeline/refine.h"
 #include "pipeline/report.h"
@@ -43,7 +44,9 @@ MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& op
   const Tessellation cells = tessellate(std::move(sampling), options, kernels, timer, context);
   const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, options, context); });
   Refined refined = refine(draft, cells, *sampler, options, timer, context);
-  return measure(std::move(refined), draft, cells, *sampler, options, timer, context);
+  LostParts lost = timer.stage(
+      "measure", 0, [&] { return find_lost_parts(*sampler, cells.sampling, refined.mesh, options, context); });
+  return measure(std::move(refined), draft, cells, std::move(lost), options, timer, context);
 }
 
 }  // namespace

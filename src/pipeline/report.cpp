@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "core/platform.h"
-#include "pipeline/lost_parts.h"
 
 namespace evenmesh {
 namespace {
@@ -63,6 +62,10 @@ class Judge {
 
   std::vector<Finding> findings(std::vector<Finding> lost) {
     findings_ = cells_.sampling.findings;
+    const auto is = [](FindingCode code) { return [code](const Finding& f) { return f.code == code; }; };
+    // Where they are says more than how many.
+    if (std::any_of(lost.begin(), lost.end(), is(FindingCode::thin_parts_lost)))
+      std::erase_if(findings_, is(FindingCode::crossings_unresolved));
     findings_.insert(findings_.end(), std::make_move_iterator(lost.begin()), std::make_move_iterator(lost.end()));
     if (report_.dropped_components > 0)
       say(FindingCode::small_components_dropped, {{"count", number(report_.dropped_components)}});
@@ -116,7 +119,7 @@ class Judge {
 
 }  // namespace
 
-MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cells, const Sampler& sampler,
+MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cells, LostParts lost,
                    const MeshOptions& options, StageTimer& timer, ExecutionContext& context) {
   MeshResult result{std::move(refined.mesh), {}};
   Report& report = result.report;
@@ -126,8 +129,6 @@ MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cell
   report.cuts += draft.cuts;
   report.self_intersections = refined.self_intersections;
   timer.stage("measure", 0.05, [&] { report.quality = measure_quality(result.mesh, context); });
-  LostParts lost = timer.stage("measure", 0,
-                               [&] { return find_lost_parts(sampler, cells.sampling, result.mesh, options, context); });
   report.dropped_components = std::max(report.dropped_components, lost.small);
   report.seeds = report.quality.vertices;
   report.alpha = static_cast<double>(report.samples) / static_cast<double>(std::max<std::size_t>(1, report.seeds));

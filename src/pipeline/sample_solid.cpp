@@ -13,6 +13,7 @@ namespace {
 constexpr int attempts = 4;            ///< to find the resolution of a surface without a size of its own
 constexpr double fractal_alpha = 150;  ///< samples per seed there
 constexpr std::size_t min_resolution = 24;
+constexpr double even_thickness = 0.4;   ///< of walls: all but a tenth is at least that much of the median
 constexpr double max_unresolved = 0.02;  ///< share of crossings: rays that graze a curved surface lose up to 1 %
 
 /// Those that were missed included.
@@ -46,6 +47,7 @@ class SolidSampling {
     result_.samples = timer_.stage("sample", 0.1, [&] { return sampler_.sample(grid, context_); });
     result_.thin = wide_spots(std::exchange(result_.samples.thin, {}), grid.origin, grid.spacing);
     if (!options_.fill_cavities) return;
+    std::erase_if(result_.thin, [](const ThinSpot& spot) { return spot.gap; });
     timer_.stage("sample", 0, [&] {
       RemainingSurface rest = fill_cavities(std::move(result_.samples), context_);
       result_.samples = std::move(rest.samples);
@@ -67,8 +69,7 @@ class SolidSampling {
     result_.plan.grid.resolution = std::clamp(static_cast<std::size_t>(cells), min_resolution, max_resolution);
   }
 
-  /// Walls and gaps that were missed need a grid point or two between their sides. First for those that all but the
-  /// thinnest tenth need, or for half of them, as long as samples are not too many.
+  /// Walls and gaps that were missed need a grid point or two between their sides, as long as samples are not too many.
   void resolve_thin_parts() {
     const double planned = static_cast<double>(result_.plan.grid.resolution);
     const double vertices = static_cast<double>(result_.plan.vertices);
@@ -78,14 +79,12 @@ class SolidSampling {
       const double edge = edge_length_of(result_.samples.total_area, vertices), h = result_.samples.grid.spacing;
       const ThinParts missed = thin_parts(result_.thin, edge);
       if (missed.area < min_missed_area * edge * edge) break;
-      const auto cost = [&](double thickness) {
-        const double finer = cells_across_wall * h / thickness;
-        return whole_samples(result_.samples) * finer * finer;
-      };
-      const double thickness = cost(missed.least) <= affordable ? missed.least : missed.thickness;
-      if (!(cost(thickness) <= affordable)) break;
+      // Where the surface tapers off some of it is thinner than any grid.
+      if (missed.least < even_thickness * missed.thickness) break;
+      const double finer = cells_across_wall * h / missed.least;
+      if (whole_samples(result_.samples) * finer * finer > affordable) break;
       parts = missed;
-      set_resolution(resolution_for(thickness, result_));
+      set_resolution(resolution_for(missed.least, result_));
       sample();
     }
     if (parts.area > 0)
@@ -137,8 +136,7 @@ void add_findings(const Sampler& sampler, Sampling& sampling) {
     say(FindingCode::not_finite, {{"name", sampler.name()}, {"count", static_cast<double>(non_finite)}});
   if (samples.cut_by_bounds && !sampler.capped_by_bounds()) say(FindingCode::closed_by_bounds);
   const double all = static_cast<double>(samples.size() + samples.unresolved);
-  // Of thin parts more is said in the end: what is known by then is whether they are missing.
-  if (sampling.thin.empty() && static_cast<double>(samples.unresolved) > max_unresolved * all)
+  if (static_cast<double>(samples.unresolved) > max_unresolved * all)
     say(FindingCode::crossings_unresolved, {{"spacing", samples.grid.spacing},
                                             {"count", static_cast<double>(samples.unresolved)},
                                             {"all", all},

@@ -150,6 +150,7 @@ Box tight_bounds(const Shape& compound, ExecutionContext& context) {
   for (const SampleBlock& block : samples.blocks)
     for (std::uint32_t s = block.begin; s < block.end; ++s)
       box.add(samples.block_center(block) + Vec3{samples.x[s], samples.y[s], samples.z[s]});
+  for (const ThinSpot& spot : samples.thin) box.add(spot.place);
   const double h = 1.5 * samples.grid.spacing;
   return common(compound.bounds, Box{box.lo - Vec3{h, h, h}, box.hi + Vec3{h, h, h}});
 }

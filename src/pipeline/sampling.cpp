@@ -9,7 +9,7 @@ namespace evenmesh {
 
 bool Sampling::unresolvable() const {
   double missed = 0;
-  for (const ThinSpot& spot : thin) missed += 2 * spot.area;
+  for (const ThinSpot& spot : thin) missed += spot.sampled ? 0 : 2 * spot.area;
   return missed > 0.1 * (missed + samples.total_area);
 }
 

@@ -33,7 +33,7 @@ struct Sampling {
   SizingField sizing;
   std::size_t sampled = 0;                        ///< samples, before the topology was repaired
   std::size_t disagreements = 0, unresolved = 0;  ///< of those samples, see SampleSet
-  /// Of solids: walls and gaps that no sample tells of, where they are as wide as a brick.
+  /// Of solids: walls and gaps thinner than a cell, where they are as wide as a brick.
   std::vector<ThinSpot> thin;
   std::size_t filled_cavities = 0;
   std::size_t dropped_components = 0;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int seed_rounds = 12;          ///< attempts to make every cell a disk with more seeds
 constexpr int patience = 3;              ///< rounds without a fifth fewer defects until seeds are given up
-constexpr int unresolvable_rounds = 2;  ///< attempts altogether where thin walls are missing: nothing helps there
+constexpr int unresolvable_rounds = 2;   ///< attempts altogether where thin walls are missing: nothing helps there
 constexpr int ball_rounds = 32;          ///< those, and attempts to change the topology where it resists
 constexpr int topology_rounds = 50;      ///< attempts altogether; the last ones divide cells down to single samples
 constexpr int sheet_rounds = 12;         ///< of sheets, which have no inside for balls

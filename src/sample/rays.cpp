@@ -61,6 +61,7 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
   for (const RayHit& hit : hits) sum += hit.step;
   if (sum != 0) hits = close_ray(hits);
   int winding = 0;
+  const RayHit* before = nullptr;  // the crossing appended last
   const auto is_inside = [&] { return rule == Winding::any ? winding != 0 : winding > 0; };
   for (std::size_t i = 0; i < hits.size();) {
     const bool inside = is_inside();
@@ -71,7 +72,7 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
       winding += hits[i].step;
       if (is_inside() != was_inside) {
         // Of two changes nothing is left; of three the last.
-        if (++changes % 2 == 0) counts.lost.push_back({hits[last], hits[i], !was_inside, 0});
+        if (++changes % 2 == 0) counts.near.push_back({hits[last], hits[i], !was_inside, false, 0});
         last = i;
       }
     }
@@ -79,16 +80,19 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
     const bool changed = is_inside() != inside;
     counts.unresolved += changes - (changed ? 1 : 0);
     if (!changed) continue;
+    if (before && before->cell + 1 == cell && hits[last].t < before->t)
+      counts.near.push_back({*before, hits[last], !inside, true, 0});
+    before = &hits[last];
     out.push_back({hits[last].source, hits[last].t, cell, !inside, hits[last].synthetic});
     counts.capped = counts.capped || hits[last].synthetic;
   }
 }
 
-std::vector<ThinSpot> thin_spots(std::span<const LostPair> lost, const Grid& grid, int axis, std::uint32_t slab,
+std::vector<ThinSpot> thin_spots(std::span<const NearPair> pairs, const Grid& grid, int axis, std::uint32_t slab,
                                  const std::function<Vec3(std::uint32_t)>& normal_of) {
   std::vector<ThinSpot> spots;
   const auto a = static_cast<std::size_t>(axis);
-  for (const LostPair& pair : lost) {
+  for (const NearPair& pair : pairs) {
     const auto place = [&](const RayHit& hit) {
       std::array<double, 3> at{};
       at[a] = hit.cell + double(hit.t);
@@ -98,7 +102,7 @@ std::vector<ThinSpot> thin_spots(std::span<const LostPair> lost, const Grid& gri
     };
     if (const auto spot = thin_spot(place(pair.from), place(pair.to), normal_of(pair.from.source),
                                     normal_of(pair.to.source), axis, grid.spacing, pair.gap))
-      spots.push_back(*spot);
+      spots.push_back({spot->place, spot->thickness, spot->area, spot->gap, pair.sampled});
   }
   return spots;
 }

@@ -21,17 +21,18 @@ struct RayHit {
   bool synthetic = false;  ///< moved onto the bounds
 };
 
-/// Two crossings of a ray in one cell that were left out: a wall of the solid between them, or a gap.
-struct LostPair {
+/// Two crossings of a ray less than a cell apart: a wall of the solid between them, or a gap.
+struct NearPair {
   RayHit from, to;
   bool gap = false;
+  bool sampled = false;   ///< a grid point happens to lie between them; without they were left out
   std::uint32_t ray = 0;  ///< for the caller: resolve_ray() does not know it
 };
 
 /// What resolving rays had to do.
 struct RayCounts {
   std::size_t unresolved = 0;  ///< crossings left out because one cell held several
-  std::vector<LostPair> lost;  ///< the same, if two were on the surface
+  std::vector<NearPair> near;  ///< those, and others as near to each other
   bool capped = false;         ///< a crossing on the bounds remained
 };
 
@@ -45,7 +46,7 @@ void resolve_ray(std::span<RayHit> hits, Winding winding, std::vector<DexelCross
 
 /// The thin walls and gaps among pairs whose rays count as those of a slab do: p · 8 + (q & 7).
 /// @param normal_of  of a hit's source: unit, of either orientation
-std::vector<ThinSpot> thin_spots(std::span<const LostPair> lost, const Grid& grid, int axis, std::uint32_t slab,
+std::vector<ThinSpot> thin_spots(std::span<const NearPair> pairs, const Grid& grid, int axis, std::uint32_t slab,
                                  const std::function<Vec3(std::uint32_t)>& normal_of);
 
 }  // namespace evenmesh

@@ -297,10 +297,10 @@ RayCounts scan_slab(const Lattice& lattice, const Mesh& mesh, Winding winding, i
     const std::span<RayHit> hits = std::span(scratch.sorted).subspan(slab.begin[r], slab.begin[r + 1] - slab.begin[r]);
     slab.begin[r] = static_cast<std::uint32_t>(scratch.out.size());
     if (hits.empty()) continue;
-    const std::size_t lost = counts.lost.size();
+    const std::size_t known = counts.near.size();
     resolve_ray(hits, winding, scratch.out, counts);
-    for (std::size_t l = lost; l < counts.lost.size(); ++l)
-      counts.lost[l].ray = static_cast<std::uint32_t>(slab.first * brick_size + r);
+    for (std::size_t n = known; n < counts.near.size(); ++n)
+      counts.near[n].ray = static_cast<std::uint32_t>(slab.first * brick_size + r);
   }
   slab.begin[rays] = static_cast<std::uint32_t>(scratch.out.size());
   slab.crossings.assign(scratch.out.begin(), scratch.out.end());
@@ -357,8 +357,8 @@ TriDexel scan(const Mesh& mesh, const Grid& grid, ExecutionContext& context, con
       counts[i] = scan_slab(lattice, mesh, winding, tasks[i].first, tasks[i].second, scratch,
                             solid.axes[axis].slabs[tasks[i].second], all);
       thin[i] =
-          thin_spots(counts[i].lost, grid, tasks[i].first, static_cast<std::uint32_t>(tasks[i].second), normal_of);
-      counts[i].lost = {};
+          thin_spots(counts[i].near, grid, tasks[i].first, static_cast<std::uint32_t>(tasks[i].second), normal_of);
+      counts[i].near = {};
     }
   });
   for (const auto& spots : thin) solid.thin.insert(solid.thin.end(), spots.begin(), spots.end());
