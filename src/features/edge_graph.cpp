@@ -105,7 +105,7 @@ class Finder {
 }  // namespace
 
 bool face_apart(const FeatureNode& a, const FeatureNode& b, const Vec3& across) {
-  constexpr double facing = 0.7;
+  constexpr double facing = 0.8;
   const auto least = [&](const FeatureNode& node) {
     return std::min(dot(node.sides[0], across), dot(node.sides[1], across));
   };

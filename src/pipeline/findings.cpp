@@ -17,7 +17,7 @@ struct Kind {
 
 constexpr auto note = Severity::note, warning = Severity::warning, broken = Severity::broken_promise;
 
-constexpr std::array kinds {
+constexpr std::array kinds{
     Kind{FindingCode::fineness_estimated, note, "fineness-estimated",
          "no -n or -l given: {vertices:.0f} vertices, from area {area:.4g}{also}"},
     Kind{FindingCode::resolution_limited, warning, "resolution-limited",
@@ -49,17 +49,7 @@ constexpr std::array kinds {
          "{dy:.3g} × {dz:.3g} in size: {cure}"},
     Kind{FindingCode::parts_lost, broken, "parts-lost",
          "{area:.3g} of the input's area lies farther than an edge from the mesh, in {parts:.0f} places, the largest "
-         "around ({x:.4g}, {y:.4g}, {z:.4g}), {dx:.3g} × {dy:.3g} × {dz:.3g} in size: {cure}"}, {y:.4g}, {z:.4g}), {
-    dx:
-      .3g
-    }
-    × {
-    dy:
-      .3g
-    } × {dz:.3g} in size: ask for more vertices or a "
-         "finer grid (-r), or mesh it as a surface (--method shell)"
-}
-,
+         "around ({x:.4g}, {y:.4g}, {z:.4g}), {dx:.3g} × {dy:.3g} × {dz:.3g} in size: {cure}"},
     Kind{FindingCode::sheets_merged, warning, "sheets-merged",
          "sheets that come within {width:.3g} of each other merge in {count:.0f} places, first at ({x:.4g}, {y:.4g}, "
          "{z:.4g}): {cure}"},
