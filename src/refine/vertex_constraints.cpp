@@ -88,6 +88,10 @@ class RimFinder {
       : mesh_(mesh), constraints_(constraints), half_edges_(mesh.triangles, mesh.vertices.size(), context) {}
 
   bool between_rims(std::uint32_t t) const {
+    constexpr double flat = 0.01;  // height by length: of a triangle without area, not of a wall
+    const auto [a, b, c] = corners_of(mesh_, t);
+    const double longest = std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
+    if (norm(area_normal(a, b, c)) < flat * longest) return false;
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
       const std::uint32_t beyond = half_edges_.opposite(h);
       if (beyond == HalfEdges::none || !constraints_.edge(origin(h), target(h))) continue;
