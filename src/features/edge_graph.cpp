@@ -74,9 +74,13 @@ class Finder {
 
   FeatureNode make_node(const CubeBrick& brick, const std::uint32_t* loop, const Vec3* normal, int n) const {
     FeatureNode node;
-    double weight = 0, area = 0;
+    double weight = 0, area = 0, least = 2;
     Box box;
     for (int i = 0; i < n; ++i) {
+      if (const Vec3& a = normal[i], &b = normal[i + 1 == n ? 0 : i + 1]; dot(a, b) < least) {
+        least = dot(a, b);
+        node.sides = {a, b};
+      }
       const Vec3 p = position(brick, loop[i]) - samples_.grid.origin;
       node.planes.add_plane(p, normal[i]);
       box.add(p);
@@ -108,6 +112,17 @@ class Finder {
 };
 
 }  // namespace
+
+bool face_apart(const FeatureNode& a, const FeatureNode& b, const Vec3& across) {
+  constexpr double facing = 0.8;
+  const auto least = [&](const FeatureNode& node) {
+    return std::min(dot(node.sides[0], across), dot(node.sides[1], across));
+  };
+  const auto most = [&](const FeatureNode& node) {
+    return std::max(dot(node.sides[0], across), dot(node.sides[1], across));
+  };
+  return (least(a) < -facing && most(b) > facing) || (most(a) > facing && least(b) < -facing);
+}
 
 FeatureGraph find_feature_graph(const SampleSet& samples, double angle, ExecutionContext& context) {
   const auto bricks = cube_bricks(samples, context);

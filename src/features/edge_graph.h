@@ -14,6 +14,7 @@ namespace evenmesh {
 struct FeatureNode {
   Vec3 place;                  ///< of the feature curve in one cube, model units
   Quadric planes;              ///< of the cube's crossings, about the grid's origin
+  std::array<Vec3, 2> sides;   ///< unit normals of the crossings that differ most
   double relative_sizing = 1;  ///< 1 / wanted vertex spacing, compared with the mean: 1 where the density is uniform
 };
 
@@ -23,6 +24,9 @@ enum class Sharpness : std::uint8_t {
   sharp,  ///< by that angle
   clear   ///< by 1.75 times as much, which noise hardly does
 };
+/// Whether two nodes lie on the two rims of a thin part or gap: faces that look away from each other, or toward.
+/// @param across  unit vector from one to the other
+bool face_apart(const FeatureNode& a, const FeatureNode& b, const Vec3& across);
 
 /// One node for every loop of crossings in a cube that a feature curve passes through, one link for every face between
 /// two. Where most of a brick is creased, as on fractals or at the apex of a needle, there is one node and no link.

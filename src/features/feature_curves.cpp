@@ -133,7 +133,7 @@ FeatureCurves find_feature_curves(const SampleSet& samples, double angle, double
   FeatureCurves all = Chains(edge, samples.grid.spacing).make(network);
   all.left_out = network.left_out;
   all = without_repeated(all, samples.grid.spacing);
-  FeatureCurves features = without_crowded(all, crowded_distance * edge);
+  FeatureCurves features = without_crowded(all, graph.nodes, samples.grid.spacing, crowded_distance * edge);
   features.apexes = find_apexes(samples, graph.nodes, features, angle, edge, context);
   return features;
 }

@@ -216,11 +216,13 @@ class Network {
     for (Index p = 0; p < paths_.size(); ++p)
       if (paths_[p].alive && paths_[p].from != none && paths_[p].length < limit) order.push_back({paths_[p].length, p});
     std::sort(order.begin(), order.end());
+    const std::vector<std::vector<Index>> long_paths =
+        order.empty() ? std::vector<std::vector<Index>>{} : paths_longer_than_edge();
     bool changed = false;
     for (const auto& [length, p] : order) {
       Path& path = paths_[p];
       const Index a = junction(path.from), b = junction(path.to);
-      if (a == b || count[a] < 2 || count[b] < 2) continue;
+      if (a == b || count[a] < 2 || count[b] < 2 || crosses_rims(path, a, b, long_paths)) continue;
       joined_.unite(a, b);
       const Index root = junction(a), other = root == a ? b : a;
       merge_into(root, other);
@@ -232,6 +234,29 @@ class Network {
       changed = true;
     }
     return changed;
+  }
+  /// By junction.
+  std::vector<std::vector<Index>> paths_longer_than_edge() {
+    std::vector<std::vector<Index>> at(joined_.size());
+    for (Index p = 0; p < paths_.size(); ++p)
+      if (paths_[p].alive && paths_[p].from != none && paths_[p].length > edge_ && !paths_[p].nodes.empty())
+        for (const Index end : {junction(paths_[p].from), junction(paths_[p].to)}) at[end].push_back(p);
+    return at;
+  }
+  /// Whether a path leads from one rim of a thin part to the other, each of which goes on along two paths at least.
+  bool crosses_rims(const Path& path, Index a, Index b, const std::vector<std::vector<Index>>& long_paths) {
+    if (path.length < 2 * spacing_ || long_paths[a].size() < 2 || long_paths[b].size() < 2) return false;
+    const Vec3 across = normalized(graph_.nodes[b].place - graph_.nodes[a].place);
+    for (const Index p : long_paths[a])
+      for (const Index q : long_paths[b])
+        if (face_apart(node_beside(paths_[p], a), node_beside(paths_[q], b), across)) return true;
+    return false;
+  }
+  /// Of a path, clear of the junction that it begins or ends at.
+  const FeatureNode& node_beside(const Path& path, Index junction_there) {
+    const std::size_t step = std::min<std::size_t>(3, path.nodes.size() - 1);
+    const bool begins = junction(path.from) == junction_there;
+    return graph_.nodes[begins ? path.nodes[step] : path.nodes[path.nodes.size() - 1 - step]];
   }
   void merge_into(Index root, Index other) {
     planes_[root].add(planes_[other]);

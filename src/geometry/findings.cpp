@@ -56,6 +56,14 @@ constexpr std::array kinds{
     Kind{FindingCode::vertices_limited, warning, "vertices-limited",
          "{asked:.0f} vertices would have fewer than {alpha:.0f} samples each at resolution {resolution:.0f}; meshing "
          "with {vertices:.0f}"},
+    Kind{FindingCode::closed_as_sheets, broken, "closed-as-sheets",
+         "the input is closed, but its walls are only {thickness:.2g} thick on average: about {vertices:.0f} vertices "
+         "are needed (-n {vertices:.0f}), or -r {resolution:.0f}, to keep their two sides apart; meshed as an open "
+         "surface"},
+    Kind{
+        FindingCode::grid_refined, note, "grid-refined",
+        "thin parts of about {thickness:.2g}, {area:.3g} in area, are kept with a grid of {resolution:.0f} cells along "
+        "the longest side instead of {planned:.0f}"},
     Kind{FindingCode::point_gaps_bridged, note, "point-gaps-bridged",
          "points about {spacing:.3g} apart: gaps of up to {gap:.3g} ({voxels:.0f} voxels) are bridged"},
     Kind{
@@ -87,6 +95,13 @@ constexpr std::array kinds{
     Kind{FindingCode::crossings_unresolved, warning, "crossings-unresolved",
          "parts thinner than a grid cell ({spacing:.3g}) were lost: {count:.0f} of {all:.0f} crossings were left out; "
          "-r {finer:.0f} resolves twice as much"},
+    Kind{FindingCode::thin_parts_lost, broken, "thin-parts-lost",
+         "thin {what} between grid points {spacing:.3g} apart: {area:.3g} of area about {thickness:.2g} thick (a tenth "
+         "below {least:.2g}) in {parts:.0f} places, the largest around ({x:.4g}, {y:.4g}, {z:.4g}), {dx:.3g} × "
+         "{dy:.3g} × {dz:.3g} in size: {cure}"},
+    Kind{FindingCode::parts_lost, broken, "parts-lost",
+         "{area:.3g} of the input's area lies farther than an edge from the mesh, in {parts:.0f} places, the largest "
+         "around ({x:.4g}, {y:.4g}, {z:.4g}), {dx:.3g} × {dy:.3g} × {dz:.3g} in size: {cure}"},
     Kind{FindingCode::cavities_filled, note, "cavities-filled",
          "{count:.0f} {surfaces} within the solid, not reached from outside: filled; --hull all keeps {them}"},
     Kind{FindingCode::narrow_gaps_filled, warning, "narrow-gaps-filled",

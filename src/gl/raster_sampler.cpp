@@ -106,7 +106,7 @@ class Band {
     parallel_tasks(execution, count, [&](std::size_t i) {
       counts[i] = resolve_slab(static_cast<std::uint32_t>(i), found.slabs[first_slab + i], solid.slabs[first_slab + i]);
     });
-    RayCounts sum{lost_, false};
+    RayCounts sum{lost_, {}, false};
     for (const RayCounts& c : counts) {
       sum.unresolved += c.unresolved;
       sum.capped = sum.capped || c.capped;

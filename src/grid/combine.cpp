@@ -1,5 +1,6 @@
 #include "grid/combine.h"
 
+#include <cmath>
 #include <span>
 
 #include "grid/blocks.h"
@@ -47,7 +48,8 @@ class Combiner {
       : a_(a), b_(b), operation_(operation), in_a_(a, context), in_b_(b, context) {}
 
   /// Appends the samples that a brick of the result keeps, in order.
-  void take(const Pair& pair, std::vector<Taken>& taken) const {
+  /// @param thin  may be null; gets the walls and gaps that are too thin to be sampled
+  void take(const Pair& pair, std::vector<Taken>& taken, std::vector<ThinSpot>* thin) const {
     taken.clear();
     std::uint32_t i = pair.a == none ? 0 : a_.blocks[pair.a].begin, j = pair.b == none ? 0 : b_.blocks[pair.b].begin;
     const std::uint32_t end_a = pair.a == none ? 0 : a_.blocks[pair.a].end;
@@ -62,9 +64,27 @@ class Combiner {
         if (keeps_b(in(in_a_, brick, b_.edge[j]))) taken.push_back({j, true});
         ++j;
       } else {
-        take_one(i++, j++, taken);
+        if (runs_against(i, j) && thin) add_spot(pair, i, j, *thin);
+        if (!runs_against(i, j)) take_one(i, j, taken);
+        ++i;
+        ++j;
       }
     }
+  }
+  /// Appends the operands' spots where the result has their surface.
+  void take_spots(std::vector<ThinSpot>& thin) const {
+    const auto take = [&](const SampleSet& set, const InsideRuns& in_other, bool of_a) {
+      for (ThinSpot spot : set.thin) {
+        const Vec3 p = (spot.place - set.grid.origin) / set.grid.spacing;
+        const auto at = [&](int axis) { return static_cast<std::int32_t>(std::lround(p[axis])); };
+        const bool inside = in_other(at(0), at(1), at(2));
+        if (!(of_a ? keeps_a(inside) : keeps_b(inside))) continue;
+        if (!of_a && turns_b()) spot.gap = !spot.gap;
+        thin.push_back(spot);
+      }
+    };
+    take(a_, in_b_, true);
+    take(b_, in_a_, false);
   }
 
   bool turns_b() const { return operation_ == Boolean::subtract; }
@@ -78,14 +98,35 @@ class Combiner {
   bool keeps_a(bool in_b) const { return operation_ == Boolean::intersect ? in_b : !in_b; }
   bool keeps_b(bool in_a) const { return operation_ == Boolean::unite ? !in_a : in_a; }
 
+  bool leaves_a(std::uint32_t i) const { return a_.edge[i].lower_end_inside(); }
+  bool leaves_b(std::uint32_t j) const { return b_.edge[j].lower_end_inside() != turns_b(); }
+  /// Of two crossings of one edge: whether one enters and the other leaves; then the edge's ends are alike.
+  bool runs_against(std::uint32_t i, std::uint32_t j) const { return leaves_a(i) != leaves_b(j); }
+
+  static float along(const SampleSet& set, std::uint32_t i) {
+    const unsigned axis = set.edge[i].axis();
+    return axis == 0 ? set.x[i] : axis == 1 ? set.y[i] : set.z[i];
+  }
+
+  /// A gap of a union, or a wall of what is common, that lies within the edge.
+  void add_spot(const Pair& pair, std::uint32_t i, std::uint32_t j, std::vector<ThinSpot>& thin) const {
+    const bool gap = operation_ == Boolean::unite;
+    const bool a_first = along(a_, i) < along(b_, j);
+    if ((a_first ? leaves_a(i) : leaves_b(j)) != gap) return;
+    const auto place = [&](const SampleSet& set, std::uint32_t block, std::uint32_t s) {
+      return set.block_center(set.blocks[block]) + Vec3{set.x[s], set.y[s], set.z[s]};
+    };
+    const Vec3 normal = unpack_normal(b_.normal[j]);
+    if (const auto spot =
+            thin_spot(place(a_, pair.a, i), place(b_, pair.b, j), unpack_normal(a_.normal[i]),
+                      turns_b() ? -normal : normal, static_cast<int>(a_.edge[i].axis()), a_.grid.spacing, gap))
+      thin.push_back(*spot);
+  }
+
   /// Of two crossings of one edge that run the same way, the one that decides.
   void take_one(std::uint32_t i, std::uint32_t j, std::vector<Taken>& taken) const {
-    const EdgeCode edge = a_.edge[i];
-    const bool leaves_a = edge.lower_end_inside(), leaves_b = b_.edge[j].lower_end_inside() != turns_b();
-    if (leaves_a != leaves_b) return;
-    const auto& along_a = edge.axis() == 0 ? a_.x : edge.axis() == 1 ? a_.y : a_.z;
-    const auto& along_b = edge.axis() == 0 ? b_.x : edge.axis() == 1 ? b_.y : b_.z;
-    const float at_a = along_a[i], at_b = along_b[j];
+    const bool leaves_a = this->leaves_a(i);
+    const float at_a = along(a_, i), at_b = along(b_, j);
     const bool latest = (operation_ == Boolean::unite) == leaves_a;
     const bool b_decides = latest ? at_b > at_a : at_b < at_a;
     taken.push_back(b_decides ? Taken{j, true} : Taken{i, false});
@@ -107,10 +148,11 @@ SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, con
   const Combiner combiner(a, b, operation, context);
   const std::vector<Pair> pairs = pairs_of(a, b);
   std::vector<std::uint32_t> count(pairs.size());
+  std::vector<std::vector<ThinSpot>> thin(pairs.size());
   parallel_for(context, pairs.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<Taken> taken;
     for (std::size_t p = begin; p < end; ++p) {
-      combiner.take(pairs[p], taken);
+      combiner.take(pairs[p], taken, &thin[p]);
       count[p] = static_cast<std::uint32_t>(taken.size());
     }
   });
@@ -118,6 +160,9 @@ SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, con
   set.grid = a.grid;
   set.disagreements = a.disagreements + b.disagreements;
   set.unresolved = a.unresolved + b.unresolved;
+  combiner.take_spots(set.thin);
+  for (const auto& spots : thin) set.unresolved += 2 * spots.size();
+  for (const auto& spots : thin) set.thin.insert(set.thin.end(), spots.begin(), spots.end());
   set.cut_by_bounds = a.cut_by_bounds || b.cut_by_bounds;
   std::vector<std::size_t> pair_of_block;
   std::uint32_t total = 0;
@@ -131,7 +176,7 @@ SampleSet combine(const SampleSet& a, const SampleSet& b, Boolean operation, con
   parallel_for(context, set.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<Taken> taken;
     for (std::size_t block = begin; block < end; ++block) {
-      combiner.take(pairs[pair_of_block[block]], taken);
+      combiner.take(pairs[pair_of_block[block]], taken, nullptr);
       std::uint32_t at = set.blocks[block].begin;
       for (const Taken& t : taken) {
         copy_sample(t.from_b ? b : a, t.index, set, at);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "evenmesh/mesh.h"
+#include "grid/thin_spots.h"
 
 namespace evenmesh {
 
@@ -120,6 +121,7 @@ struct SampleSet : SampleColumns {
   double total_weight = 0;        ///< Σ weights(), model units squared; at least the area
   std::size_t disagreements = 0;  ///< grid points whose inside differed between directions, settled by vote
   std::size_t unresolved = 0;     ///< crossings left out because one grid edge held several (features thinner than h)
+  std::vector<ThinSpot> thin;     ///< walls and gaps thinner than a cell; what changes samples leaves them out
   bool cut_by_bounds = false;     ///< the solid reached the bounds and was closed there
   /// Of a part (part_of() in grid/blocks.h): Morton codes of the bricks next to it whose samples are not in it,
   /// ascending. Cubes there are not walked.

@@ -45,6 +45,7 @@ struct TriDexel {
   Grid grid;
   std::array<DexelAxis, 3> axes;
   std::size_t unresolved = 0;     ///< crossings left out because one grid edge held several
+  std::vector<ThinSpot> thin;     ///< walls and gaps thinner than a cell
   std::size_t disagreements = 0;  ///< grid points settled by vote
   bool closed = false;            ///< the mesh has no boundary, so the directions agree without a vote
   bool cut_by_bounds = false;

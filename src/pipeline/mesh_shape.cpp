@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "geometry/primitives.h"
 #include "pipeline/draft.h"
 #include "pipeline/faults.h"
 #include "pipeline/judge.h"
 #include "pipeline/kernels.h"
+#include "pipeline/lost_parts.h"
 #include "pipeline/plan.h"
 #include "pipeline/refine.h"
 #include "pipeline/report.h"
@@ -75,7 +77,10 @@ MeshResult run(const Kernels& kernels, const Shape& shape, const MeshOptions& op
   const Tessellation cells = tessellate(std::move(sampling), local, kernels, timer, context);
   const Draft draft = timer.stage("place", 0.05, [&] { return extract(cells, local, context); });
   Refined refined = refine(draft, cells, *sampler, local, timer, context);
-  MeshResult result = measure(std::move(refined), draft, cells, local, timer, context);
+  LostParts lost = timer.stage("measure", 0, [&] {
+    return find_lost_parts(*sampler, cells.sampling, translated(refined.mesh, -sampler->origin()), local, context);
+  });
+  MeshResult result = measure(std::move(refined), draft, cells, std::move(lost), local, timer, context);
   if (sampler->origin() != Vec3{}) move_back(sampler->origin(), result.report, kept);
   complete_findings(judgement, result, context);
   return result;

@@ -17,13 +17,40 @@ constexpr std::size_t many_components = 16;     ///< small ones: of a surface th
 constexpr double samples_per_voxel_area = 1.5;  ///< Σ |n_a|, the mean over all directions
 constexpr unsigned default_thickness = 2;       ///< voxels
 
-Route route_of(const Sampler& sampler, const MeshOptions& options, ExecutionContext& context) {
+/// The vertices that the user said in one way or another.
+std::optional<double> asked_vertices(const MeshOptions& options, double area) {
+  if (options.vertices) return static_cast<double>(*options.vertices);
+  if (options.edge_length) return std::round(vertices_of(area, *options.edge_length));
+  return std::nullopt;
+}
+
+/// Whether a grid that may be had keeps both sides of a closed surface apart. If not, says which one would.
+bool keeps_sides_apart(const Sampler& sampler, double thickness, const MeshOptions& options, ExecutionContext& context,
+                       std::vector<Finding>& findings) {
+  const double area = sampler.area(context), longest = sampler.bounds().longest_side();
+  const double cells = cells_across_wall * longest / thickness;
+  const double samples = samples_per_voxel_area * area * std::pow(cells / longest, 2);
+  const bool fine = options.resolution ? cells <= static_cast<double>(*options.resolution) + 1
+                                       : samples <= affordable_samples(asked_vertices(options, area).value_or(0));
+  if (fine && cells <= static_cast<double>(max_resolution)) return true;
+  findings.push_back(make_finding(FindingCode::closed_as_sheets, {{"thickness", thickness},
+                                                                  {"vertices", round_up(samples / affordable_alpha)},
+                                                                  {"resolution", std::ceil(cells)}}));
+  return false;
+}
+
+Route route_of(const Sampler& sampler, const MeshOptions& options, ExecutionContext& context, Plan& plan) {
   if (options.method == Method::raster && (options.wrap || !sampler.has_inside()))
     throw InvalidInput("rays need a solid: points and wraps are meshed by the shell method");
   if (options.wrap) return Route::wrap;
   if (options.method == Method::shell) return Route::sheets;
   if (options.method == Method::raster) return Route::solid;
-  return sampler.solidity(context) < min_solidity ? Route::sheets : Route::solid;
+  const Solidity solidity = sampler.solidity(context);
+  if (solidity.share < min_solidity) return Route::sheets;
+  if (solidity.thickness && !keeps_sides_apart(sampler, *solidity.thickness, options, context, plan.findings))
+    return Route::sheets;
+  plan.mean_thickness = solidity.thickness;
+  return Route::solid;
 }
 
 /// Edges turn little, and are no longer than thin parts are thick.
@@ -31,13 +58,6 @@ double estimated_vertices(const SurfaceScale& scale, double diagonal) {
   double edge = std::min(0.35 * scale.curvature_radius, 1.5 * scale.thickness);
   edge = std::clamp(edge, diagonal / 500, diagonal / 40);
   return std::clamp(std::round(vertices_of(scale.area, edge)), 200.0, 1e6);
-}
-
-/// The vertices that the user said in one way or another.
-std::optional<double> asked_vertices(const MeshOptions& options, double area) {
-  if (options.vertices) return static_cast<double>(*options.vertices);
-  if (options.edge_length) return std::round(vertices_of(area, *options.edge_length));
-  return std::nullopt;
 }
 
 double solid_vertices(const SurfaceScale& scale, double diagonal, const MeshOptions& options, Plan& plan) {
@@ -66,11 +86,13 @@ double solid_resolution(const SurfaceScale& scale, double longest, double vertic
 
 void plan_solid(const Sampler& sampler, const MeshOptions& options, StageTimer& timer, ExecutionContext& context,
                 Plan& plan) {
-  const SurfaceScale scale =
-      timer.stage("sample", 0.02, [&] { return presample(sampler, options.resolution.value_or(0), context); });
   const double longest = sampler.bounds().longest_side();
+  const double thin = plan.mean_thickness ? std::ceil(cells_across_wall * longest / *plan.mean_thickness) : 0;
+  const std::size_t finest = std::max(options.resolution.value_or(0), static_cast<std::size_t>(thin));
+  const SurfaceScale scale = timer.stage("sample", 0.02, [&] { return presample(sampler, finest, context); });
   double vertices = solid_vertices(scale, sampler.bounds().diagonal(), options, plan);
   double resolution = solid_resolution(scale, longest, vertices, options);
+  if (!options.resolution) resolution = std::max(resolution, thin);
   if (resolution > double(max_resolution)) {
     resolution = double(max_resolution);
     plan.findings.push_back(
@@ -133,9 +155,14 @@ void plan_shell(const Sampler& sampler, const MeshOptions& options, ExecutionCon
 
 }  // namespace
 
+double round_up(double count) {
+  const double digits = std::pow(10, std::max(0.0, std::floor(std::log10(count)) - 1));
+  return std::ceil(count / digits) * digits;
+}
+
 Plan make_plan(const Sampler& sampler, const MeshOptions& options, StageTimer& timer, ExecutionContext& context) {
   Plan plan;
-  plan.route = timer.stage("sample", 0, [&] { return route_of(sampler, options, context); });
+  plan.route = timer.stage("sample", 0, [&] { return route_of(sampler, options, context, plan); });
   plan.refinable = !options.resolution;
   if (plan.route == Route::solid)
     plan_solid(sampler, options, timer, context, plan);

@@ -1,5 +1,6 @@
 #include "pipeline/refine.h"
 
+#include <algorithm>
 #include <array>
 
 #include "geometry/single_precision.h"
@@ -78,7 +79,10 @@ class Refinement {
   void release_features() {
     constexpr double sliver = 0.35;  // angles of 12°
     if (draft_.constraints.curve.empty()) return;
-    const auto slivers = triangles_below(draft_.mesh, sliver, context_);
+    auto slivers = triangles_below(draft_.mesh, sliver, context_);
+    if (slivers.empty()) return;
+    const auto thin = triangles_between_rims(draft_.mesh, draft_.constraints, slivers, context_);
+    std::erase_if(slivers, [&](std::uint32_t t) { return std::binary_search(thin.begin(), thin.end(), t); });
     if (slivers.empty()) return;
     draft_.constraints.release(draft_.mesh, slivers);
     polish(draft_.mesh, projector_.get(), context_, draft_.constraints);

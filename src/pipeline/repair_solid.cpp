@@ -42,6 +42,7 @@ class SolidRepair {
   explicit SolidRepair(Tessellator& whole) : whole_(whole), crowded_(!whole.result.filled.balls().empty()) {}
 
   void run() {
+    if (whole_.result.sampling.unresolvable()) return;
     if (static_cast<double>(whole_.defects().size()) > hopeless * static_cast<double>(whole_.wanted()) + 10 * few)
       return;
     const SampleSet& samples = whole_.result.sampling.samples;
@@ -167,6 +168,7 @@ class SolidRepair {
 
 bool fill_unresolved(Tessellator& state) {
   Tessellation& cells = state.result;
+  if (cells.sampling.unresolvable()) return false;  // what is missing cannot be filled
   if (static_cast<double>(state.defects().size()) <= torn * static_cast<double>(state.wanted()) + few) return false;
   const SampleSet& samples = cells.sampling.samples;
   for (int round = 0; round < filling_rounds; ++round) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "core/platform.h"
@@ -61,8 +63,13 @@ class Judge {
   Judge(const Draft& draft, const Tessellation& cells, const MeshOptions& options, const Report& report)
       : draft_(draft), cells_(cells), options_(options), report_(report), quality_(report.quality) {}
 
-  std::vector<Finding> findings(const Coarseness& coarse) {
+  std::vector<Finding> findings(std::vector<Finding> lost, const Coarseness& coarse) {
     findings_ = cells_.sampling.findings;
+    const auto is = [](FindingCode code) { return [code](const Finding& f) { return f.code == code; }; };
+    // Where they are says more than how many.
+    if (std::any_of(lost.begin(), lost.end(), is(FindingCode::thin_parts_lost)))
+      std::erase_if(findings_, is(FindingCode::crossings_unresolved));
+    findings_.insert(findings_.end(), std::make_move_iterator(lost.begin()), std::make_move_iterator(lost.end()));
     if (report_.dropped_components > 0)
       say(FindingCode::small_components_dropped, {{"count", number(report_.dropped_components)}});
     judge_topology();
@@ -132,8 +139,8 @@ class Judge {
 
 }  // namespace
 
-MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cells, const MeshOptions& options,
-                   StageTimer& timer, ExecutionContext& context) {
+MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cells, LostParts lost,
+                   const MeshOptions& options, StageTimer& timer, ExecutionContext& context) {
   MeshResult result{std::move(refined.mesh), {}};
   Report& report = result.report;
   add_sampling(cells.sampling, report);
@@ -142,11 +149,12 @@ MeshResult measure(Refined refined, const Draft& draft, const Tessellation& cell
   report.cuts += draft.cuts;
   report.self_intersections = refined.self_intersections;
   timer.stage("measure", 0.05, [&] { report.quality = measure_quality(result.mesh, context); });
+  report.dropped_components = std::max(report.dropped_components, lost.small);
   report.seeds = report.quality.vertices;
   report.alpha = static_cast<double>(report.samples) / static_cast<double>(std::max<std::size_t>(1, report.seeds));
   const Coarseness coarse =
       timer.stage("measure", 0, [&] { return coarseness(result.mesh, draft.constraints, context); });
-  report.findings = Judge(draft, cells, options, report).findings(coarse);
+  report.findings = Judge(draft, cells, options, report).findings(std::move(lost.findings), coarse);
   report.seconds = timer.seconds();
   report.peak_memory_bytes = peak_memory_bytes();
   context.report("done", 1);

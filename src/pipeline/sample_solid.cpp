@@ -4,6 +4,7 @@
 #include "evenmesh/error.h"
 #include "grid/density.h"
 #include "grid/surface_components.h"
+#include "grid/thin_spots.h"
 #include "pipeline/lost_pieces.h"
 #include "pipeline/sampling.h"
 
@@ -13,7 +14,13 @@ namespace {
 constexpr int attempts = 4;            ///< to find the resolution of a surface without a size of its own
 constexpr double fractal_alpha = 150;  ///< samples per seed there
 constexpr std::size_t min_resolution = 24;
+constexpr double even_thickness = 0.4;   ///< of walls: all but a tenth is at least that much of the median
 constexpr double max_unresolved = 0.02;  ///< share of crossings: rays that graze a curved surface lose up to 1 %
+
+/// Those that were missed included.
+double whole_samples(const SampleSet& samples) {
+  return static_cast<double>(samples.size() + samples.unresolved);
+}
 
 class SolidSampling {
  public:
@@ -29,6 +36,7 @@ class SolidSampling {
     const double h = result_.samples.grid.spacing;
     const double surprise = static_cast<double>(result_.samples.size()) / (result_.plan.samples_per_h2 / (h * h));
     if (result_.plan.refinable && (surprise > 2 || surprise < 0.6)) sample_again();
+    if (result_.plan.refinable) resolve_thin_parts();
     weigh();
     if (result_.plan.small_components > 0 || surprise > 2) drop_small();
     add_lost_pieces();
@@ -40,7 +48,9 @@ class SolidSampling {
     const Grid grid = make_grid(sampler_.bounds(), result_.plan.grid.resolution);
     result_.samples = timer_.stage("sample", 0.1, [&] { return sampler_.sample(grid, context_); });
     result_.filled_cavities = 0;
+    result_.thin = wide_spots(std::exchange(result_.samples.thin, {}), grid.origin, grid.spacing);
     if (!options_.fill_cavities) return;
+    std::erase_if(result_.thin, [](const ThinSpot& spot) { return spot.gap; });
     timer_.stage("sample", 0, [&] {
       fill();
       if (fill_narrow_gaps(result_, context_)) fill();
@@ -65,6 +75,32 @@ class SolidSampling {
   }
   void set_resolution(double cells) {
     result_.plan.grid.resolution = std::clamp(static_cast<std::size_t>(cells), min_resolution, max_resolution);
+  }
+
+  /// Walls and gaps that were missed need a grid point or two between their sides, as long as samples are not too many.
+  void resolve_thin_parts() {
+    const double planned = static_cast<double>(result_.plan.grid.resolution);
+    const double vertices = static_cast<double>(result_.plan.vertices);
+    const double affordable = affordable_samples(vertices);
+    ThinParts parts;
+    for (int attempt = 0; attempt < attempts && !result_.thin.empty(); ++attempt) {
+      const double edge = edge_length_of(result_.samples.total_area, vertices), h = result_.samples.grid.spacing;
+      const ThinParts missed = thin_parts(result_.thin, edge);
+      if (missed.area < min_missed_area * edge * edge) break;
+      // Where the surface tapers off some of it is thinner than any grid.
+      if (missed.least < even_thickness * missed.thickness) break;
+      const double finer = cells_across_wall * h / missed.least;
+      if (whole_samples(result_.samples) * finer * finer > affordable) break;
+      parts = missed;
+      set_resolution(resolution_for(missed.least, result_));
+      sample();
+    }
+    if (parts.area > 0)
+      result_.findings.push_back(
+          make_finding(FindingCode::grid_refined, {{"thickness", parts.thickness},
+                                                   {"area", parts.area},
+                                                   {"resolution", static_cast<double>(result_.plan.grid.resolution)},
+                                                   {"planned", planned}}));
   }
 
   /// Smaller cells need a finer grid.

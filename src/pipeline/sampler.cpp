@@ -40,7 +40,7 @@ bool on_a_line(const std::vector<Vec3>& points) {
 class MeshSampler final : public Sampler {
  public:
   using Sampler::Sampler;
-  double solidity(ExecutionContext& context) const override { return evenmesh::solidity(mesh(), context); }
+  Solidity solidity(ExecutionContext& context) const override { return measure_solidity(mesh(), context); }
   double area(ExecutionContext&) const override {
     double area = 0;
     for (std::size_t t = 0; t < mesh().triangles.size(); ++t) {
@@ -83,7 +83,7 @@ class PointSampler final : public Sampler {
       : Sampler(std::move(shape), origin, kernels), spacing_(evenmesh::point_spacing(cloud(), context)) {}
 
   bool has_inside() const override { return false; }
-  double solidity(ExecutionContext&) const override { return 0; }
+  Solidity solidity(ExecutionContext&) const override { return {}; }
   double area(ExecutionContext&) const override {
     if (on_a_line(cloud().points)) return 0;
     return 0.75 * static_cast<double>(cloud().points.size()) * spacing_ * spacing_;
@@ -119,7 +119,9 @@ class CompoundSampler final : public Sampler {
 class RaySampler final : public Sampler {
  public:
   using Sampler::Sampler;
-  double solidity(ExecutionContext& context) const override { return source().solidity(bounds(), context); }
+  Solidity solidity(ExecutionContext& context) const override {
+    return {.share = source().solidity(bounds(), context), .thickness = {}};
+  }
   double area(ExecutionContext& context) const override {
     constexpr std::size_t coarse = 128;
     return source().sample_surface(make_grid(bounds(), coarse), bounds(), context).total_area;
@@ -148,6 +150,7 @@ Box tight_bounds(const Shape& compound, ExecutionContext& context) {
   for (const SampleBlock& block : samples.blocks)
     for (std::uint32_t s = block.begin; s < block.end; ++s)
       box.add(samples.block_center(block) + Vec3{samples.x[s], samples.y[s], samples.z[s]});
+  for (const ThinSpot& spot : samples.thin) box.add(spot.place);
   const double h = 1.5 * samples.grid.spacing;
   return common(compound.bounds, Box{box.lo - Vec3{h, h, h}, box.hi + Vec3{h, h, h}});
 }

@@ -11,6 +11,7 @@
 #include "grid/sample_set.h"
 #include "pipeline/kernels.h"
 #include "pipeline/stage_timer.h"
+#include "sample/extra_directions.h"
 #include "sample/projector.h"
 #include "shape/local_origin.h"
 #include "shape/non_finite.h"
@@ -36,6 +37,8 @@ class Sampler {
   Sampler(const Sampler&) = delete;
   Sampler& operator=(const Sampler&) = delete;
 
+  /// The triangles of a shape that is a mesh; null for others.
+  const Mesh* mesh() const { return shape_.mesh(); }
   const std::string& name() const { return shape_.name; }
   const Box& bounds() const { return shape_.bounds; }
   /// Where the sampler's coordinates, which are all that the pipeline sees, begin in the caller's (local_origin.h).
@@ -50,8 +53,8 @@ class Sampler {
 
   /// Whether rays can tell inside from outside at all: not for points.
   virtual bool has_inside() const { return true; }
-  /// How far there is an inside to speak of, [0, 1]: 1 for solids.
-  virtual double solidity(ExecutionContext&) const { return 1; }
+  /// How far there is an inside to speak of: a share of 1 for solids.
+  virtual Solidity solidity(ExecutionContext&) const { return {.share = 1, .thickness = {}}; }
   /// Of the surface, in squared model units, estimated coarsely where it must be; 0 where there is none.
   virtual double area(ExecutionContext& context) const = 0;
   /// Mean distance between points, model units; none for surfaces.

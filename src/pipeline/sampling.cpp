@@ -1,5 +1,7 @@
 #include "pipeline/sampling.h"
 
+#include <cmath>
+
 #include "geometry/sidedness.h"
 #include "grid/density.h"
 #include "sample/dexels.h"
@@ -17,6 +19,17 @@ void say_rounding(const Sampler& sampler, Sampling& sampling) {
 }
 
 }  // namespace
+
+bool Sampling::unresolvable() const {
+  double missed = 0;
+  for (const ThinSpot& spot : thin) missed += spot.sampled ? 0 : 2 * spot.area;
+  return missed > 0.1 * (missed + samples.total_area);
+}
+
+double resolution_for(double thickness, const Sampling& sampling) {
+  const double cells = static_cast<double>(sampling.plan.grid.resolution);
+  return std::ceil(1.01 * cells_across_wall * cells * sampling.samples.grid.spacing / thickness);
+}
 
 double apply_density(Sampling& sampling, const Density& density, ExecutionContext& context) {
   if (sampling.sheet) {

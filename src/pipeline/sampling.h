@@ -23,6 +23,9 @@ struct SheetSampling {
   SampleSet on_surface;               ///< `samples`, drawn onto the surface in the middle of the shell
 };
 
+/// What may be missed of thin parts without a word: a few cells of the mesh, in squared edges.
+inline constexpr double min_missed_area = 4;
+
 struct Sampling {
   Plan plan;          ///< as it was carried out
   SampleSet samples;  ///< of the solid's surface, or of one side of every sheet
@@ -30,6 +33,8 @@ struct Sampling {
   SizingField sizing;
   std::size_t sampled = 0;                        ///< samples, before the topology was repaired
   std::size_t disagreements = 0, unresolved = 0;  ///< of those samples, see SampleSet
+  /// Of solids: walls and gaps thinner than a cell, where they are as wide as a brick.
+  std::vector<ThinSpot> thin;
   std::size_t filled_cavities = 0;
   double gap = 0;          ///< width of the gaps that edges cannot enter, model units; 0: nobody asked
   double hidden_area = 0;  ///< of the surface in such gaps that were filled
@@ -40,9 +45,15 @@ struct Sampling {
   std::vector<Finding> findings;           ///< those of the plan included
 
   bool closed() const { return !sheet; }
+  /// Thin walls or gaps are missing on a tenth of the surface or more: what was sampled is what the grid happened to
+  /// hit, and no number of seeds or balls makes it whole.
+  bool unresolvable() const;
   /// Where vertices are placed.
   const SampleSet& surface() const { return sheet ? sheet->on_surface : samples; }
 };
+
+/// Cells along the longest side with which walls and gaps of that thickness are kept.
+double resolution_for(double thickness, const Sampling& sampling);
 
 /// Samples as planned; again on a finer or coarser grid where the surface turns out to be larger or smaller than the
 /// plan expected, as on fractals, or where the density wants smaller cells.

@@ -5,7 +5,9 @@
 #include <limits>
 #include <unordered_map>
 
+#include "geometry/half_edges.h"
 #include "geometry/segment.h"
+#include "geometry/triangle.h"
 
 namespace evenmesh {
 namespace {
@@ -80,7 +82,60 @@ class ApexCells {
   std::unordered_map<Cell, std::vector<std::uint32_t>, Hash> apexes_;
 };
 
+class RimFinder {
+ public:
+  RimFinder(const Mesh& mesh, const VertexConstraints& constraints, const ExecutionContext& context)
+      : mesh_(mesh), constraints_(constraints), half_edges_(mesh.triangles, mesh.vertices.size(), context) {}
+
+  bool between_rims(std::uint32_t t) const {
+    constexpr double flat = 0.01;  // height by length: of a triangle without area, not of a wall
+    const auto [a, b, c] = corners_of(mesh_, t);
+    const double longest = std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
+    if (norm(area_normal(a, b, c)) < flat * longest) return false;
+    for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+      const std::uint32_t beyond = half_edges_.opposite(h);
+      if (beyond == HalfEdges::none || !constraints_.edge(origin(h), target(h))) continue;
+      if (has_rim(origin(HalfEdges::previous(h)), along(h), normal(beyond / 3))) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::uint32_t origin(std::uint32_t h) const { return mesh_.triangles[h / 3][h % 3]; }
+  std::uint32_t target(std::uint32_t h) const { return origin(HalfEdges::next(h)); }
+  Vec3 along(std::uint32_t h) const { return normalized(mesh_.vertices[target(h)] - mesh_.vertices[origin(h)]); }
+  Vec3 normal(std::uint32_t t) const {
+    const auto [a, b, c] = corners_of(mesh_, t);
+    return normalized(cross(b - a, c - a));
+  }
+  /// Whether a curve goes through the vertex that way, with a face beside it that looks away.
+  bool has_rim(std::uint32_t vertex, const Vec3& way, const Vec3& away) const {
+    bool found = false;
+    half_edges_.visit_umbrellas(vertex, [&](std::uint32_t h, std::uint32_t) {
+      const std::uint32_t back = half_edges_.opposite(h);
+      if (found || back == HalfEdges::none || !constraints_.edge(origin(h), target(h))) return;
+      const bool looks_away = dot(normal(h / 3), away) < -0.5 || dot(normal(back / 3), away) < -0.5;
+      found = looks_away && std::abs(dot(along(h), way)) > 0.9;
+    });
+    return found;
+  }
+
+  const Mesh& mesh_;
+  const VertexConstraints& constraints_;
+  HalfEdges half_edges_;
+};
+
 }  // namespace
+
+std::vector<std::uint32_t> triangles_between_rims(const Mesh& mesh, const VertexConstraints& constraints,
+                                                  std::span<const std::uint32_t> triangles,
+                                                  const ExecutionContext& context) {
+  const RimFinder finder(mesh, constraints, context);
+  std::vector<std::uint32_t> found;
+  for (const std::uint32_t t : triangles)
+    if (finder.between_rims(t)) found.push_back(t);
+  return found;
+}
 
 std::size_t constrain_apexes(Mesh& mesh, VertexConstraints& constraints, std::span<const Vec3> apexes,
                              double max_distance) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "evenmesh/execution_context.h"
 #include "features/feature_curves.h"
 
 namespace evenmesh {
@@ -30,6 +31,12 @@ struct VertexConstraints {
   /// Sets the vertices of those triangles free.
   void release(const Mesh& mesh, std::span<const std::uint32_t> triangles);
 };
+
+/// Those of the triangles that lie between the two rims of a thin part: its thickness makes them slivers, and without
+/// them it would have none at its rim. Rims run side by side, and the faces beyond them look away from each other.
+std::vector<std::uint32_t> triangles_between_rims(const Mesh& mesh, const VertexConstraints& constraints,
+                                                  std::span<const std::uint32_t> triangles,
+                                                  const ExecutionContext& context);
 
 /// Apex by apex, the vertex nearest to it (of several the first) goes there and becomes a corner, if it is free and at
 /// most `max_distance` away; what earlier apexes have moved counts where it is by then. Returns how many moved.

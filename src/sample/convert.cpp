@@ -256,6 +256,7 @@ SampleSet sample_with(const TriDexel& solid, const std::vector<SourceNormal>& no
   SampleSet set;
   set.grid = solid.grid;
   set.unresolved = solid.unresolved;
+  set.thin = solid.thin;
   set.disagreements = solid.disagreements;
   set.cut_by_bounds = solid.cut_by_bounds;
   const PlacedAxes placed = place_all(solid, context);

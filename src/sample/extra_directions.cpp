@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "evenmesh/repair.h"
+#include "geometry/triangle.h"
 #include "sample/scan.h"
 
 namespace evenmesh {
@@ -58,8 +59,43 @@ double agreement(const TriDexel& rays) {
   return any == 0 ? 0 : static_cast<double>(agreed) / static_cast<double>(any);
 }
 
+namespace {
+
+/// What the rays of one axis pass of the solid.
+double volume_along(const TriDexel& rays, std::size_t axis) {
+  double cells = 0;
+  for (const DexelSlab& slab : rays.axes[axis].slabs)
+    for (const DexelCrossing& c : slab.crossings) cells += (c.enters ? -1 : 1) * (c.cell + double(c.t));
+  return cells * std::pow(rays.grid.spacing, 3);
+}
+
+double area_of(const Mesh& mesh) {
+  double area = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = corners_of(mesh, t);
+    area += triangle_area(a, b, c);
+  }
+  return area;
+}
+
+}  // namespace
+
+Solidity measure_solidity(const Mesh& mesh, ExecutionContext& context) {
+  constexpr std::size_t resolution = 64;
+  const TriDexel rays = scan_rays(mesh, make_grid(mesh.bounds(), resolution), context);
+  Solidity solidity{agreement(rays), {}};
+  if (!rays.closed) return solidity;
+  // Rays that meet the solid's runs by chance see more of a thin part than there is.
+  double volume = std::min({volume_along(rays, 0), volume_along(rays, 1), volume_along(rays, 2)});
+  for (const ThinSpot& spot : rays.thin) volume += spot.gap ? 0 : double(spot.thickness) * spot.area;
+  solidity.thickness = 2 * volume / area_of(mesh);
+  // All of a thin plate may lie between the grid points, of which any direction would say the same.
+  if (solidity.share == 0 && volume > 0) solidity.share = 1;
+  return solidity;
+}
+
 double solidity(const Mesh& mesh, ExecutionContext& context) {
-  return with_threads(context, [&] { return agreement(scan_rays(mesh, make_grid(mesh.bounds(), 64), context)); });
+  return with_threads(context, [&] { return measure_solidity(mesh, context).share; });
 }
 
 }  // namespace evenmesh

@@ -1,6 +1,7 @@
 #pragma once
 /// What rays of other directions say where those of the grid disagree.
 
+#include <optional>
 #include <vector>
 
 #include "evenmesh/solid.h"
@@ -30,5 +31,14 @@ class ExtraDirections {
 /// The share of the grid points inside by one direction's rays that are inside by all three's; 0 where none is.
 /// @param rays  without a vote
 double agreement(const TriDexel& rays);
+
+/// How far a mesh is a solid.
+struct Solidity {
+  double share = 0;                 ///< see solidity() in repair.h
+  std::optional<double> thickness;  ///< of closed meshes: twice the volume by the area, model units
+};
+
+/// Cost: as that of solidity().
+Solidity measure_solidity(const Mesh& mesh, ExecutionContext& context);
 
 }  // namespace evenmesh

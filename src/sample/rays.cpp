@@ -63,6 +63,7 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
   for (const RayHit& hit : hits) sum += hit.step;
   if (sum != 0) hits = close_ray(hits);
   int winding = 0;
+  const RayHit* before = nullptr;  // the crossing appended last
   const auto is_inside = [&] { return rule == Winding::any ? winding != 0 : winding > 0; };
   for (std::size_t i = 0; i < hits.size();) {
     const bool inside = is_inside();
@@ -76,6 +77,8 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
       // Two at once are faces of bodies that touch: nothing lies between.
       const bool at_once = changes > 0 && hits[i].t - last_change <= same_place;
       changes = at_once ? changes - 1 : changes + 1;
+      // Of two changes nothing is left; of three the last.
+      if (!at_once && changes % 2 == 0) counts.near.push_back({hits[last], hits[i], !was_inside, false, 0});
       last_change = hits[i].t;
       last = i;
     }
@@ -83,9 +86,31 @@ void resolve_ray(std::span<RayHit> hits, Winding rule, std::vector<DexelCrossing
     const bool changed = is_inside() != inside;
     counts.unresolved += changes - (changed ? 1 : 0);
     if (!changed) continue;
+    if (before && before->cell + 1 == cell && hits[last].t < before->t)
+      counts.near.push_back({*before, hits[last], !inside, true, 0});
+    before = &hits[last];
     out.push_back({hits[last].source, hits[last].t, cell, !inside, hits[last].synthetic});
     counts.capped = counts.capped || hits[last].synthetic;
   }
+}
+
+std::vector<ThinSpot> thin_spots(std::span<const NearPair> pairs, const Grid& grid, int axis, std::uint32_t slab,
+                                 const std::function<Vec3(std::uint32_t)>& normal_of) {
+  std::vector<ThinSpot> spots;
+  const auto a = static_cast<std::size_t>(axis);
+  for (const NearPair& pair : pairs) {
+    const auto place = [&](const RayHit& hit) {
+      std::array<double, 3> at{};
+      at[a] = hit.cell + double(hit.t);
+      at[static_cast<std::size_t>(dexel_p_axis[a])] = pair.ray / brick_size;
+      at[static_cast<std::size_t>(dexel_q_axis[a])] = slab * brick_size + pair.ray % brick_size;
+      return grid.point(at[0], at[1], at[2]);
+    };
+    if (const auto spot = thin_spot(place(pair.from), place(pair.to), normal_of(pair.from.source),
+                                    normal_of(pair.to.source), axis, grid.spacing, pair.gap))
+      spots.push_back({spot->place, spot->thickness, spot->area, spot->gap, pair.sampled});
+  }
+  return spots;
 }
 
 }  // namespace evenmesh

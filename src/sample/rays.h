@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -20,9 +21,18 @@ struct RayHit {
   bool synthetic = false;  ///< moved onto the bounds
 };
 
+/// Two crossings of a ray less than a cell apart: a wall of the solid between them, or a gap.
+struct NearPair {
+  RayHit from, to;
+  bool gap = false;
+  bool sampled = false;   ///< a grid point happens to lie between them; without they were left out
+  std::uint32_t ray = 0;  ///< for the caller: resolve_ray() does not know it
+};
+
 /// What resolving rays had to do.
 struct RayCounts {
   std::size_t unresolved = 0;  ///< crossings left out because one cell held several
+  std::vector<NearPair> near;  ///< those, and others as near to each other
   bool capped = false;         ///< a crossing on the bounds remained
 };
 
@@ -33,5 +43,10 @@ void sort_hits(std::span<RayHit> hits);
 /// @param winding  what counts as inside; of closed meshes that face outward the number rises where the ray enters
 /// Rays whose winding number does not return to 0 are read by parity, less an unmatched hit.
 void resolve_ray(std::span<RayHit> hits, Winding winding, std::vector<DexelCrossing>& out, RayCounts& counts);
+
+/// The thin walls and gaps among pairs whose rays count as those of a slab do: p · 8 + (q & 7).
+/// @param normal_of  of a hit's source: unit, of either orientation
+std::vector<ThinSpot> thin_spots(std::span<const NearPair> pairs, const Grid& grid, int axis, std::uint32_t slab,
+                                 const std::function<Vec3(std::uint32_t)>& normal_of);
 
 }  // namespace evenmesh

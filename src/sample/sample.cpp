@@ -60,8 +60,10 @@ SampleSet sample_offset(const Compound& compound, const Grid& grid, const Box& b
   const Grid own = make_grid(box, std::clamp<std::size_t>(cells, 1, 8192));
   const SampleSet samples = sample_any(operand, own, box, context);
   if (samples.size() == 0) return none;
-  return sample_field(*distance_field(samples, compound.distance, grid.spacing, room_of(grid), context), grid, bounds,
-                      context);
+  SampleSet set = sample_field(*distance_field(samples, compound.distance, grid.spacing, room_of(grid), context), grid,
+                               bounds, context);
+  set.thin = samples.thin;
+  return set;
 }
 
 SampleSet sample_any(const Shape& shape, const Grid& grid, const Box& bounds, ExecutionContext& context) {

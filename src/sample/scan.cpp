@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "evenmesh/error.h"
+#include "geometry/triangle.h"
 #include "sample/extra_directions.h"
 #include "sample/lattice.h"
 #include "sample/rays.h"
@@ -295,7 +296,11 @@ RayCounts scan_slab(const Lattice& lattice, const Mesh& mesh, Winding winding, i
   for (std::size_t r = 0; r < rays; ++r) {
     const std::span<RayHit> hits = std::span(scratch.sorted).subspan(slab.begin[r], slab.begin[r + 1] - slab.begin[r]);
     slab.begin[r] = static_cast<std::uint32_t>(scratch.out.size());
-    if (!hits.empty()) resolve_ray(hits, winding, scratch.out, counts);
+    if (hits.empty()) continue;
+    const std::size_t known = counts.near.size();
+    resolve_ray(hits, winding, scratch.out, counts);
+    for (std::size_t n = known; n < counts.near.size(); ++n)
+      counts.near[n].ray = static_cast<std::uint32_t>(slab.first * brick_size + r);
   }
   slab.begin[rays] = static_cast<std::uint32_t>(scratch.out.size());
   slab.crossings.assign(scratch.out.begin(), scratch.out.end());
@@ -337,6 +342,11 @@ TriDexel scan(const Mesh& mesh, const Grid& grid, ExecutionContext& context, con
     for (std::size_t s = 0; s < slabs; ++s) tasks.emplace_back(a, s);
   }
   std::vector<RayCounts> counts(tasks.size());
+  std::vector<std::vector<ThinSpot>> thin(tasks.size());
+  const auto normal_of = [&](std::uint32_t t) {
+    const auto [a, b, c] = corners_of(mesh, t);
+    return normalized(area_normal(a / grid.spacing, b / grid.spacing, c / grid.spacing));
+  };
   const std::size_t rays = std::size_t{*std::max_element(grid.size.begin(), grid.size.end())} * brick_size;
   parallel_for(context, tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
     Scratch scratch;
@@ -346,8 +356,12 @@ TriDexel scan(const Mesh& mesh, const Grid& grid, ExecutionContext& context, con
       DexelSlab* all = solid.closed ? nullptr : &raw[axis].slabs[tasks[i].second];
       counts[i] = scan_slab(lattice, mesh, winding, tasks[i].first, tasks[i].second, scratch,
                             solid.axes[axis].slabs[tasks[i].second], all);
+      thin[i] =
+          thin_spots(counts[i].near, grid, tasks[i].first, static_cast<std::uint32_t>(tasks[i].second), normal_of);
+      counts[i].near = {};
     }
   });
+  for (const auto& spots : thin) solid.thin.insert(solid.thin.end(), spots.begin(), spots.end());
   for (const RayCounts& c : counts) {
     solid.unresolved += c.unresolved;
     solid.cut_by_bounds = solid.cut_by_bounds || c.capped;

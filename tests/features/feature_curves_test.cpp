@@ -58,6 +58,20 @@ TEST(FeatureCurves, OfACylinderAreTwoClosedCircles) {
   }
 }
 
+TEST(FeatureCurves, BothRimsOfAThinPlateAreFollowed) {
+  // A fifth of an edge thick, and four cells.
+  const SampleSet samples = sampled_expression("max(abs(x)-1, abs(y)-1, abs(z)-0.0315)", 1.1, 140);
+  const FeatureCurves features = features_of(samples, 0.32);
+  EXPECT_EQ(features.corners.size(), 8u);
+  EXPECT_EQ(features.curves.size(), 12u);
+}
+
+TEST(FeatureCurves, OfANarrowChamferNeitherEdgeIsFollowed) {
+  const SampleSet samples = sampled_expression("max(abs(x)-1, abs(y)-1, abs(z)-1, x+z-1.9)", 1.1, 100);
+  EXPECT_EQ(features_of(samples, 0.3).curves.size(), features_of(samples, 0.5).curves.size() + 2)
+      << "0.14 is nearly half of the finer edge, and less than a third of the other";
+}
+
 TEST(FeatureCurves, SmoothAndRoundedSurfacesHaveNone) {
   for (const char* name : {"sphere", "torus", "rounded-box", "octic", "tangle"})
     EXPECT_TRUE(features_of(sampled_gallery(name, 96), 0.1).curves.empty()) << name;

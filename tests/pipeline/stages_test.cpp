@@ -22,7 +22,7 @@ MeshResult measured(const Mesh& mesh, std::int64_t surface_euler, std::size_t tw
   Draft draft;
   draft.two_triangle_spheres = two_triangle_spheres;
   StageTimer timer(ExecutionContext::silent());
-  return measure({mesh, 0}, draft, cells, {}, timer, ExecutionContext::silent());
+  return measure({mesh, 0}, draft, cells, {}, {}, timer, ExecutionContext::silent());
 }
 
 TEST(Stages, AnotherEulerNumberThanThatOfTheSurfaceIsSaid) {
@@ -60,7 +60,7 @@ TEST(Stages, CrossingsThatTheGridCannotHoldAreCountedAndSaid) {
   }
   const Report report = meshed(plates, {.vertices = 1000, .resolution = 100}).report;
   EXPECT_GT(report.unresolved, 500u);
-  EXPECT_TRUE(has_finding(report, FindingCode::crossings_unresolved));
+  EXPECT_TRUE(has_finding(report, FindingCode::thin_parts_lost));
   EXPECT_EQ(meshed(gallery_shape("cube"), {.vertices = 500}).report.unresolved, 0u);
 }
 
