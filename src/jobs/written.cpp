@@ -17,7 +17,8 @@ void measure_again(MeshResult& result, ExecutionContext& context) {
     return finding.code == FindingCode::self_intersections || finding.code == FindingCode::no_area;
   });
   const auto say = [&](FindingCode code, std::size_t count) {
-    if (count > 0) report.findings.push_back(make_finding(code, {{"count", static_cast<double>(count)}}));
+    if (count > 0)
+      report.findings.push_back(make_finding(code, {{"count", static_cast<double>(count)}, {"where", std::string()}}));
   };
   say(FindingCode::self_intersections, report.self_intersections);
   say(FindingCode::no_area, report.quality.degenerate_faces);

@@ -83,7 +83,7 @@ void constrain(const Tessellation& cells, Draft& draft) {
   for (std::size_t l = 0; l < fixed.size(); ++l) {
     const Vec3& place = fixed.positions[l];
     const std::uint32_t v = draft.vertex_of_label[l];
-    if (v == Draft::none || cells.was_changed_at(place)) continue;
+    if (v == Draft::none || cells.balls.covers(place)) continue;
     const Attachment& on = fixed.fixed[l];
     constraints.curve[v] = on.kind == Attachment::Kind::corner ? VertexConstraints::corner : on.index;
     draft.mesh.vertices[v] = place;

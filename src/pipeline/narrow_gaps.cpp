@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "band/enclosed.h"
 #include "pipeline/sampling.h"
@@ -12,7 +13,7 @@ constexpr double worth_filling = 0.05;  ///< share of the area
 
 }  // namespace
 
-bool fill_narrow_gaps(Sampling& sampling, ExecutionContext& context) {
+bool fill_narrow_gaps(Sampling& sampling, const std::string& cure, ExecutionContext& context) {
   SampleSet& samples = sampling.samples;
   std::erase_if(sampling.findings, [](const Finding& f) { return f.code == FindingCode::narrow_gaps_filled; });
   if (samples.size() == 0) return false;
@@ -24,7 +25,6 @@ bool fill_narrow_gaps(Sampling& sampling, ExecutionContext& context) {
   const double hidden = area - filled.total_area;
   sampling.hidden_area = hidden >= worth_filling * area ? hidden : 0;
   if (sampling.hidden_area == 0) return false;
-  const std::string cure = sampling.plan.route == Route::solid ? ", or take --hull all" : "";
   sampling.findings.push_back(
       make_finding(FindingCode::narrow_gaps_filled, {{"gap", 2 * reach * h}, {"area", hidden}, {"cure", cure}}));
   samples = std::move(filled);

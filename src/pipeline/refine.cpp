@@ -24,8 +24,10 @@ class Refinement {
     if (options_.placement != Placement::centroid && cells_.sampling.plan.route != Route::wrap) {
       projector_ = sampler_.projector(cells_.sampling.surface(), context_);
       if (!cells_.balls.balls().empty()) projector_ = make_ball_projector(std::move(projector_), cells_.balls);
-      if (!cells_.filled.balls().empty())
-        projector_ = make_filling_projector(std::move(projector_), cells_.filled, cells_.sampling.samples.grid.spacing);
+      const bool everywhere = cells_.sampling.hidden_area > 0;
+      if (everywhere || cells_.filled_points.size() > 0)
+        projector_ = make_filling_projector(std::move(projector_), cells_.filled_points,
+                                            cells_.sampling.samples.grid.spacing, everywhere);
     }
     std::vector<Vec3>& vertices = draft_.mesh.vertices;
     if (projector_)

@@ -16,37 +16,45 @@ constexpr int dividing_from = 16;
 constexpr int most_seeds_per_cell = 4;  ///< in one round; one more every other round
 constexpr double few = 20;              ///< defects of small meshes, which are no sign
 /// Defects per vertex, above which the surface is too intricate for so few vertices, or for the grid.
-constexpr double hopeless = 0.5;
+constexpr double hopeless = 2;
 constexpr int releasing_from = 6;   ///< sharp edges, where they do not fit however small the cells beside them are
 constexpr int relaxing_rounds = 2;  ///< of all seeds there; then the new ones find their places alone
 constexpr int seed_rounds = 12;     ///< attempts to make every cell a disk with more seeds
 constexpr int patience = 3;         ///< rounds without a fifth fewer defects until seeds are given up
-constexpr double work_limit = 16;   ///< rounds on as many samples as the surface has, altogether
+constexpr double work_limit = 24;   ///< rounds on as many samples as the surface has, altogether
 constexpr double smallest_surface = 1e5;  ///< samples that such a round is counted as, at least
 constexpr double seed_limit = 3;          ///< of the vertices asked for: what the topology may come to need
-/// Defects per vertex and ambiguous faces per sample, above which the grid does not resolve the solid: all of these
-/// faces are seen to at once. Some are at sharp edges and where surface just reaches a layer of the grid; those do no
-/// harm, and there are no defects.
+/// Defects per vertex and ambiguous faces per sample, above which the grid does not resolve the solid. Some such faces
+/// are at sharp edges and where surface just reaches a layer of the grid; those do no harm, and there are no defects.
 constexpr double torn = 0.01, crowded = 0.003;
-constexpr double first_radius = 0.6;  ///< of places to be filled, in edges
-constexpr double crowded_radius = 1;  ///< where the solid is not resolved
-constexpr int filling_rounds = 4;
+constexpr double place_radius = 1;  ///< of places to be filled, in edges
+/// Radii of balls, in edges, as in [Raster2Mesh §4.4].
+constexpr int ball_rounds = 32;
+constexpr double work_after_balls = 8;  ///< rounds for the rest
+constexpr double first_ball = 0.5, ball_growth = 0.125, last_ball = 1;
 
 std::vector<Vec3> ambiguous_faces(Tessellator& state) {
   return state.timer.stage("connect", 0,
                            [&] { return find_ambiguous_faces(state.result.sampling.samples, state.context); });
 }
 
+bool is_unresolved(Tessellator& state) {
+  if (static_cast<double>(state.defects().size()) <= torn * static_cast<double>(state.wanted()) + few) return false;
+  const auto faces = static_cast<double>(ambiguous_faces(state).size());
+  return faces > crowded * static_cast<double>(state.result.sampling.samples.size());
+}
+
 class SolidRepair {
  public:
-  explicit SolidRepair(Tessellator& whole) : whole_(whole), crowded_(!whole.result.filled.balls().empty()) {}
+  explicit SolidRepair(Tessellator& whole) : whole_(whole), unresolved_(is_unresolved(whole)) {}
 
   void run() {
-    if (whole_.result.sampling.unresolvable()) return;
+    if (whole_.fits() || whole_.result.sampling.unresolvable()) return;
     if (static_cast<double>(whole_.defects().size()) > hopeless * static_cast<double>(whole_.wanted()) + 10 * few)
       return;
     const SampleSet& samples = whole_.result.sampling.samples;
     work_left_ = work_limit * std::max(smallest_surface, static_cast<double>(samples.size()));
+    if (unresolved_) unite_balls();
     for (int visit = 0; visit < visits && !whole_.fits() && !used_up(); ++visit) {
       visit_places(visit);
       spend(0.5, whole_);
@@ -54,6 +62,7 @@ class SolidRepair {
       if (fixed_seeds_are_in_the_way(whole_)) whole_.release_features();
       if (!whole_.unconnected().empty() && whole_.clear_small_components()) spend(1, whole_);
     }
+    if (whole_.fits()) settle();
   }
 
  private:
@@ -97,6 +106,50 @@ class SolidRepair {
     spend(0.5, state());
   }
 
+  /// Relaxes all once more, if that tears nothing.
+  void settle() {
+    const Seeds seeds = whole_.result.seeds;
+    const std::size_t pieces = whole_.result.complex.pieces.size();
+    whole_.forget_split_cells();
+    whole_.relax();
+    whole_.connect();
+    if (whole_.fits()) return;
+    whole_.forget_split_cells();
+    whole_.result.seeds = seeds;
+    whole_.result.seeds.positions.resize(seeds.size() - pieces);
+    whole_.connect();
+  }
+
+  /// Of a solid that the grid does not resolve: seeds, and balls wherever these do not help, on all of the surface.
+  void unite_balls() {
+    const double edge = whole_.edge();
+    RepairProgress progress;
+    for (int round = 0; round < ball_rounds && !whole_.fits() && !used_up(); ++round) {
+      const std::size_t found = whole_.defects().size();
+      const bool seeds_are_idle = progress.idle_after(found) >= patience || round >= seed_rounds;
+      if (seeds_are_idle) progress.give_up(patience);
+      const std::vector<Vec3> ambiguous = ambiguous_faces(whole_);
+      whole_.context.log(fmt::format("balls {}: {} defects, {} seeds, {} balls, {} ambiguous faces", round, found,
+                                     whole_.result.seeds.size(), whole_.result.balls.balls().size(), ambiguous.size()));
+      const TopologyRepair repair = whole_.plan_repair(ambiguous, {.first_radius = first_ball * edge,
+                                                                   .growth = ball_growth * edge,
+                                                                   .last_radius = last_ball * edge,
+                                                                   .prefer_places = seeds_are_idle,
+                                                                   .unresolved = true});
+      whole_.forget_split_cells();
+      whole_.insert(repair.seeds);
+      if (!repair.changed.empty()) {
+        whole_.result.balls = BallIndex(repair.places);
+        whole_.unite_changed(repair.changed);
+      }
+      if (!seeds_are_idle || !repair.changed.empty()) whole_.relax();
+      whole_.connect();
+      spend(1, whole_);
+      if (!whole_.unconnected().empty()) whole_.clear_small_components();
+    }
+    work_left_ += work_after_balls * size_of(whole_);
+  }
+
   void visit_places(int visit) {
     RepairProgress progress;
     std::size_t found_before = 0, fewest = state().defects().size();
@@ -109,8 +162,9 @@ class SolidRepair {
       }
       const std::vector<Vec3> ambiguous = ambiguous_faces(state());
       whole_.context.log(fmt::format(
-          "repair {}.{}: {} defects, {} seeds, {} places filled, {} ambiguous faces; {} samples", visit, round, found,
-          state().result.seeds.size(), whole_.result.filled.balls().size(), ambiguous.size(), size_of(state())));
+          "repair {}.{}: {} defects, {} seeds, {} places changed, {} ambiguous faces; {} samples", visit, round, found,
+          state().result.seeds.size(), whole_.result.filled.balls().size() + whole_.result.balls.balls().size(),
+          ambiguous.size(), size_of(state())));
       const bool dividing = round >= dividing_from, seeds_are_idle = round >= seed_rounds || idle >= patience;
       if (seeds_are_idle) progress.give_up(patience);
       fewest = std::min(fewest, found);
@@ -135,12 +189,10 @@ class SolidRepair {
 
   TopologyRepairOptions options(int round, bool prefer_places) const {
     const double h = whole_.result.sampling.samples.grid.spacing, edge = whole_.edge();
-    TopologyRepairOptions options{
-        .prefer_places = prefer_places || crowded_, .unresolved = crowded_, .seeds_only = round >= dividing_from};
+    TopologyRepairOptions options{.prefer_places = prefer_places, .seeds_only = round >= dividing_from};
     options.seeds_per_cell = static_cast<std::size_t>(std::min(1 + round / 2, most_seeds_per_cell));
-    options.first_radius = std::max(4 * h, (crowded_ ? crowded_radius : first_radius) * edge);
-    options.growth = std::max(2 * h, 0.2 * edge);
-    options.last_radius = std::max(options.first_radius, crowded_radius * edge);
+    options.first_radius = options.last_radius = std::max(4 * h, place_radius * edge);
+    options.growth = 2 * h;
     return options;
   }
 
@@ -158,7 +210,7 @@ class SolidRepair {
   }
 
   Tessellator& whole_;
-  bool crowded_;                       ///< gaps had to be filled everywhere
+  bool unresolved_;                    ///< too much of the solid to fill its gaps: balls make it simpler
   std::unique_ptr<Tessellator> part_;  ///< none: rounds are those of the whole
   std::vector<Vec3> points_;           ///< that the part lies around
   double work_left_ = 0;               ///< samples
@@ -167,29 +219,8 @@ class SolidRepair {
 }  // namespace
 
 bool fill_unresolved(Tessellator& state) {
-  Tessellation& cells = state.result;
-  if (cells.sampling.unresolvable()) return false;  // what is missing cannot be filled
-  if (static_cast<double>(state.defects().size()) <= torn * static_cast<double>(state.wanted()) + few) return false;
-  const SampleSet& samples = cells.sampling.samples;
-  for (int round = 0; round < filling_rounds; ++round) {
-    const std::vector<Vec3> faces = ambiguous_faces(state);
-    if (static_cast<double>(faces.size()) <= crowded * static_cast<double>(samples.size())) return round > 0;
-    const double radius = std::max(4 * samples.grid.spacing, crowded_radius * state.edge()), apart = 0.5 * radius;
-    BallIndex all(cells.filled.balls(), radius);
-    std::vector<Ball> places;
-    PointHash taken(apart);
-    for (const Vec3& p : faces) {
-      if (taken.near(p, apart, [](std::uint32_t) { return true; })) continue;
-      taken.add(p);
-      places.push_back({p, radius});
-      all.add(places.back());
-    }
-    state.context.log(fmt::format("fill {}: {} ambiguous faces, {} places", round, faces.size(), places.size()));
-    cells.filled = std::move(all);
-    state.fill_gaps(places);
-    state.drop_small_components();
-  }
-  return true;
+  // What is missing altogether cannot be filled.
+  return !state.result.sampling.unresolvable() && is_unresolved(state) && state.fill_narrow_gaps();
 }
 
 void repair_solid(Tessellator& state) {

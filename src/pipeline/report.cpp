@@ -102,13 +102,14 @@ class Judge {
     const bool manifold = quality_.two_manifold() && quality_.oriented();
     if (const std::size_t balls = cells_.balls.balls().size(); balls > 0)
       say(FindingCode::topology_simplified, {{"count", number(balls)}});
-    if (const std::vector<Ball>& places = cells_.filled.balls(); !places.empty())
+    const double h = report_.spacing;
+    if (const PointHash& filled = cells_.filled_points; filled.size() > 0)
       findings_.push_back(make_finding(FindingCode::gaps_filled,
-                                       {{"count", number(places.size())},
-                                        {"volume", cells_.filled_volume},
-                                        {"size", 2 * report_.spacing},
+                                       {{"count", number(cells_.filled.balls().size())},
+                                        {"volume", number(filled.size()) * h * h * h},
+                                        {"size", 2 * h},
                                         {"finer", 4 * asked()}},
-                                       places.front().center));
+                                       filled[0]));
     if (!closed && fragments && !cells_.two_manifold) say(FindingCode::cells_torn);
     const double bad_edges = number(quality_.non_manifold_edges);
     if (!closed && !manifold) say(FindingCode::not_manifold, {{"edges", bad_edges}});

@@ -140,7 +140,7 @@ class BandSampling {
       return enclosed_by(band_surface(eroded, border, context_), context_);
     });
     if (result_.samples.size() == 0) throw UnusableInput("the surface is too small for its grid: raise the resolution");
-    if (options_.fill_cavities) timer_.stage("shell", 0, [&] { fill_narrow_gaps(result_, context_); });
+    if (options_.fill_cavities) timer_.stage("shell", 0, [&] { fill_narrow_gaps(result_, "", context_); });
   }
 
   /// Counts the gaps that hide surface; elsewhere it is still seen from its other side.

@@ -53,7 +53,7 @@ class SolidSampling {
     std::erase_if(result_.thin, [](const ThinSpot& spot) { return spot.gap; });
     timer_.stage("sample", 0, [&] {
       fill();
-      if (fill_narrow_gaps(result_, context_)) fill();
+      if (fill_narrow_gaps(result_, ", or take --hull all", context_)) fill();
     });
   }
 

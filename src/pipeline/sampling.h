@@ -72,7 +72,8 @@ Sampling sample_band(const Sampler& sampler, Plan plan, const MeshOptions& optio
 void add_one_sided(const Sampler& sampler, Sampling& sampling, const ExecutionContext& context);
 /// An edge cannot go where the outside is narrower. Where that hides much surface it is not worth its vertices: fills
 /// such gaps in the samples, and says so. Little is left to the repair of the topology. Returns whether it did.
-bool fill_narrow_gaps(Sampling& sampling, ExecutionContext& context);
+/// @param cure  what else keeps them, as ", or take …"
+bool fill_narrow_gaps(Sampling& sampling, const std::string& cure, ExecutionContext& context);
 
 /// How many more samples the smallest cells need than the mean ones; weighs the samples, and sets the sizing.
 double apply_density(Sampling& sampling, const Density& density, ExecutionContext& context);

@@ -22,7 +22,7 @@ struct Tessellation {
   bool two_manifold = false;          ///< all cells fit together
   BallIndex balls{{}};                ///< united with the solid to make its topology simpler
   BallIndex filled{{}};               ///< places where narrow gaps of the solid were filled
-  double filled_volume = 0;           ///< there, model units cubed
+  PointHash filled_points{1};         ///< of the grid, that are inside since
   std::vector<double> energies;       ///< energy ratio after every evaluation
   double energy_ratio = 0;            ///< of the seeds before the topology was repaired
   std::size_t released_curves = 0;    ///< sharp edges given up where they stood in the way of the topology
@@ -30,7 +30,10 @@ struct Tessellation {
   std::size_t regularization_rounds = 0;
 
   /// Whether the solid may be another there than the shape.
-  bool was_changed_at(const Vec3& p) const { return balls.covers(p) || filled.covers(p); }
+  bool was_changed_at(const Vec3& p) const {
+    return balls.covers(p) ||
+           filled_points.near(p, 2 * sampling.samples.grid.spacing, [](std::uint32_t) { return true; });
+  }
 };
 
 /// Spreads seeds and connects their cells: one loop for solids and sheets.

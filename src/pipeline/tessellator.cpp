@@ -63,6 +63,8 @@ double Tessellator::edge() const {
 
 void Tessellator::find_features() {
   if (!options.feature_angle || result.sampling.plan.route != Route::solid) return;
+  std::erase_if(result.sampling.findings,
+                [](const Finding& f) { return f.code == FindingCode::features_not_followed; });
   const SampleSet& samples = result.sampling.samples;
   const double edge = result.sampling.sizing.mean();
   // Then noise cannot be told from edges.
@@ -199,6 +201,14 @@ void Tessellator::insert(std::span<const Vec3> seeds) {
   result.inserted_seeds += seeds.size();
 }
 
+bool Tessellator::fill_narrow_gaps() {
+  return timer.stage("regularize", 0, [&] {
+    const bool filled = evenmesh::fill_narrow_gaps(result.sampling, "", context);
+    if (filled) evaluator_.reset();
+    return filled;
+  });
+}
+
 std::vector<std::uint32_t> Tessellator::unconnected() const {
   constexpr double owns_nothing = -1;
   const SampleSet& samples = result.sampling.samples;
@@ -280,7 +290,7 @@ TopologyRepair Tessellator::plan_repair(std::span<const Vec3> ambiguous, Topolog
     repair.edge = closed() ? edge() : edge_length_of(result.sampling.samples.total_area, double(result.seeds.size()));
     repair.given = given();
     return plan_topology_repair(result.sampling.samples, result.labels, result.seeds, defects(), ambiguous,
-                                result.filled, repair);
+                                repair.unresolved ? result.balls : result.filled, repair);
   });
 }
 
@@ -305,7 +315,8 @@ void Tessellator::fill_gaps(std::span<const Ball> places) {
   timer.stage("regularize", 0, [&] {
     FilledSolid made = evenmesh::fill_gaps(result.sampling.samples, places, context);
     result.sampling.samples = std::move(made.samples);
-    result.filled_volume += made.volume;
+    if (result.filled_points.size() == 0) result.filled_points = PointHash(4 * made.samples.grid.spacing);
+    for (const Vec3& p : made.points) result.filled_points.add(p);
     evaluator_.reset();
     ++result.regularization_rounds;
   });

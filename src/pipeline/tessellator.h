@@ -36,6 +36,9 @@ class Tessellator {
   void adjust_and_relax(std::size_t count);
   /// Unites the changed balls with the solid, and clears seeds away from them.
   void unite_changed(std::span<const std::uint32_t> changed);
+  /// Fills all gaps that edges cannot go into, where they hide much surface; whether they do. Cells are to be connected
+  /// again then.
+  bool fill_narrow_gaps();
   /// Fills narrow gaps there; cells are to be connected again.
   void fill_gaps(std::span<const Ball> places);
   /// Removes pieces of the surface that are smaller than a cell; whether there were any.
@@ -88,11 +91,13 @@ class Tessellator {
 };
 
 /// Where the grid leaves the topology to chance in so many places that it does not resolve the solid, as of fractals
-/// and of walls thinner than a cell: fills there; seeds are to be spread again then.
+/// and of parts that nearly touch everywhere: fills gaps that edges cannot go into, if they hide much surface; seeds
+/// are to be spread again then.
 /// @return whether it did
 bool fill_unresolved(Tessellator& state);
-/// More seeds, and gaps filled where seeds cannot help, around the places where cells do not fit together: until
-/// they do, or the work of a dozen relaxations of the whole surface is done. What is left then stays.
+/// More seeds, and gaps filled where seeds cannot help (of solids that the grid does not resolve, balls united), around
+/// the places where cells do not fit together: until they do, or the work of a dozen relaxations of the whole surface
+/// is done. What is left then stays.
 void repair_solid(Tessellator& state);
 /// The paper's loop: the topology gives way, not the number of vertices. [Raster2Mesh §4.4]
 void simplify_solid(Tessellator& state);

@@ -9,7 +9,7 @@
 namespace evenmesh {
 
 std::unique_ptr<Tessellator> Tessellator::part_around(std::span<const Vec3> points) const {
-  constexpr double free_within = 2, part_within = 4.5;  // edges: between them are two rings of cells that stay complete
+  constexpr double free_within = 3, part_within = 5.5;  // edges: between them are two rings of cells that stay complete
   constexpr double most = 0.8;                          // of the samples
   const SampleSet& samples = result.sampling.samples;
   const SizingField& sizing = result.sampling.sizing;
@@ -39,6 +39,7 @@ std::unique_ptr<Tessellator> Tessellator::part_around(std::span<const Vec3> poin
   part->result.seeds = result.seeds;
   part->result.seeds.positions.resize(given());
   part->result.filled = result.filled;
+  part->result.balls = result.balls;
   for (const Vec3& seed : part->result.seeds.positions) part->frozen_.push_back(!is_near(seed, free_within));
   return part;
 }

@@ -39,25 +39,27 @@ class BallProjector final : public Projector {
 
 class FillingProjector final : public Projector {
  public:
-  FillingProjector(std::unique_ptr<Projector> inner, const BallIndex& places, double near)
-      : inner_(std::move(inner)), places_(places), near_(near) {}
+  FillingProjector(std::unique_ptr<Projector> inner, const PointHash& filled, double spacing, bool everywhere)
+      : inner_(std::move(inner)), filled_(filled), spacing_(spacing), everywhere_(everywhere) {}
 
   Vec3 project(const Vec3& p, double limit) const override {
     if (!inner_) return p;
-    return inner_->project(p, places_.covers(p) ? std::min(limit, near_) : limit);
+    const bool is_near = everywhere_ || filled_.near(p, 3 * spacing_, [](std::uint32_t) { return true; });
+    return inner_->project(p, is_near ? std::min(limit, spacing_) : limit);
   }
 
  private:
   std::unique_ptr<Projector> inner_;
-  const BallIndex& places_;
-  double near_;
+  const PointHash& filled_;
+  double spacing_;
+  bool everywhere_;
 };
 
 }  // namespace
 
-std::unique_ptr<Projector> make_filling_projector(std::unique_ptr<Projector> inner, const BallIndex& places,
-                                                  double near) {
-  return std::make_unique<FillingProjector>(std::move(inner), places, near);
+std::unique_ptr<Projector> make_filling_projector(std::unique_ptr<Projector> inner, const PointHash& filled,
+                                                  double spacing, bool everywhere) {
+  return std::make_unique<FillingProjector>(std::move(inner), filled, spacing, everywhere);
 }
 
 std::unique_ptr<Projector> make_ball_projector(std::unique_ptr<Projector> inner, const BallIndex& balls) {

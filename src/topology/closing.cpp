@@ -16,21 +16,72 @@ namespace {
 constexpr int narrowest = 2, widest = 6;  ///< closing radii, grid spacings
 /// Grid spacings that a ball must miss a point by: balls stand on grid points, and would miss some of plain surface.
 constexpr double slack = 0.5;
+/// Bricks on every side that so many points around one, and the next layer, reach into.
+int bricks_within(int margin) {
+  return (margin + 8) / 8;
+}
 constexpr double inside_depth = 1, corner_depth = 0.5;
+
+/// Which grid points are inside, of the bricks around some others: 64 bytes each.
+class InsideBits {
+ public:
+  /// @param reach  bricks on every side
+  InsideBits(const SolidEditor& editor, std::span<const std::uint64_t> bricks, int reach, ExecutionContext& context) {
+    for (const std::uint64_t key : bricks) {
+      const SolidEditor::Brick at = morton_decode(key);
+      for (int z = at[2] - reach; z <= at[2] + reach; ++z)
+        for (int y = at[1] - reach; y <= at[1] + reach; ++y)
+          for (int x = at[0] - reach; x <= at[0] + reach; ++x)
+            if (std::min({x, y, z}) >= 0)
+              keys_.push_back(morton_code(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y),
+                                          static_cast<std::uint64_t>(z)));
+      if (keys_.size() > most_unsorted) tidy();
+    }
+    tidy();
+    bits_.resize(keys_.size());
+    parallel_for(context, keys_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) bits_[b] = bits_of(editor.signs(morton_decode(keys_[b])));
+    });
+  }
+
+  /// Bit i + 8 j of word k.
+  const std::array<std::uint64_t, 8>& of(const SolidEditor::Brick& brick) const {
+    const auto it = std::lower_bound(keys_.begin(), keys_.end(), morton_code(brick[0], brick[1], brick[2]));
+    return bits_[static_cast<std::size_t>(it - keys_.begin())];
+  }
+
+ private:
+  static constexpr std::size_t most_unsorted = 1 << 24;
+  void tidy() {
+    std::sort(keys_.begin(), keys_.end());
+    keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+  }
+  static std::array<std::uint64_t, 8> bits_of(const BrickSigns& signs) {
+    std::array<std::uint64_t, 8> bits{};
+    for (int k = 0; k < BrickSigns::points; ++k)
+      for (int j = 0; j < BrickSigns::points; ++j)
+        for (int i = 0; i < BrickSigns::points; ++i)
+          if (signs.inside(i, j, k)) bits[static_cast<std::size_t>(k)] |= std::uint64_t{1} << (8 * j + i);
+    return bits;
+  }
+
+  std::vector<std::uint64_t> keys_;  ///< ascending
+  std::vector<std::array<std::uint64_t, 8>> bits_;
+};
 
 /// Squared distances on a cube of grid points around a brick, in grid spacings; no more than `far`.
 class Window {
  public:
   /// Distances to the inside points. @param margin  points around the brick's own and the next layer
-  Window(const SolidEditor& editor, const SolidEditor::Brick& brick, int margin, int radius)
+  Window(const InsideBits& bits, const SolidEditor::Brick& brick, int margin, int radius)
       : margin_(margin),
         side_(BrickSigns::side + 2 * margin),
         far_(static_cast<std::int16_t>((radius + 2) * (radius + 2))),
         value_(static_cast<std::size_t>(side_ * side_ * side_), far_) {
-    const int reach = (margin + 7) / 8;
+    const int reach = bricks_within(margin);
     for (int z = -reach; z <= reach; ++z)
       for (int y = -reach; y <= reach; ++y)
-        for (int x = -reach; x <= reach; ++x) load(editor, brick, {x, y, z});
+        for (int x = -reach; x <= reach; ++x) load(bits, brick, {x, y, z});
     inside_.reserve(value_.size());
     for (const std::int16_t v : value_) inside_.push_back(v == 0);
     if (std::find(value_.begin(), value_.end(), 0) != value_.end()) find_distances(radius + 1);
@@ -51,7 +102,7 @@ class Window {
   std::size_t place(int i, int j, int k) const {
     return static_cast<std::size_t>(((k + margin_) * side_ + j + margin_) * side_ + i + margin_);
   }
-  void load(const SolidEditor& editor, const SolidEditor::Brick& brick, std::array<int, 3> shift) {
+  void load(const InsideBits& all, const SolidEditor::Brick& brick, std::array<int, 3> shift) {
     std::array<int, 3> lo{}, hi{};
     SolidEditor::Brick at{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -61,11 +112,12 @@ class Window {
       if (coordinate < 0 || lo[a] > hi[a]) return;
       at[a] = static_cast<std::uint16_t>(coordinate);
     }
-    const BrickSigns signs = editor.signs(at);
+    const auto& bits = all.of(at);
     for (int k = lo[2]; k <= hi[2]; ++k)
       for (int j = lo[1]; j <= hi[1]; ++j)
         for (int i = lo[0]; i <= hi[0]; ++i)
-          if (signs.inside(i - 8 * shift[0], j - 8 * shift[1], k - 8 * shift[2])) value_[place(i, j, k)] = 0;
+          if (bits[static_cast<std::size_t>(k - 8 * shift[2])] >> (8 * (j - 8 * shift[1]) + i - 8 * shift[0]) & 1)
+            value_[place(i, j, k)] = 0;
   }
 
   /// From 0 at the points asked for: the least over each axis in turn (Saito and Toriwaki, Pattern Recognition 1994),
@@ -97,22 +149,27 @@ class Window {
   std::vector<char> inside_;
 };
 
+/// What distances of both passes look at, and one point more.
+int margin_of(int radius) {
+  return 2 * radius + 1;
+}
+
 /// One brick of a solid whose gaps are filled.
 class FilledBrick {
  public:
-  FilledBrick(const SolidEditor& editor, const SolidEditor::Brick& brick, std::span<const Ball> places,
-              const std::vector<std::uint32_t>& near)
+  FilledBrick(const SolidEditor& editor, const InsideBits& bits, const SolidEditor::Brick& brick,
+              std::span<const Ball> places, const std::vector<std::uint32_t>& near)
       : editor_(editor), brick_(brick), before_(editor.signs(brick)) {
     for (const std::uint32_t p : near) {
       places_.push_back(places[p]);
       const int radius = radius_of(places[p]);
       if (windows_.contains(radius)) continue;
-      Window& window = windows_.emplace(radius, Window(editor, brick, 2 * radius + 1, radius)).first->second;
+      Window& window = windows_.emplace(radius, Window(bits, brick, margin_of(radius), radius)).first->second;
       window.turn(radius);
     }
   }
 
-  NewBlock remake(double& filled) {
+  NewBlock remake(std::vector<Vec3>& filled) {
     close();
     BrickSigns after = before_;
     for (int k = 0; k < BrickSigns::side; ++k)
@@ -120,7 +177,7 @@ class FilledBrick {
         for (int i = 0; i < BrickSigns::side; ++i) {
           if (before_.inside(i, j, k) || depth(i, j, k) <= 0) continue;
           after.inside(i, j, k) = true;
-          filled += std::max({i, j, k}) < BrickSigns::points ? 1 : 0;
+          if (std::max({i, j, k}) < BrickSigns::points) filled.push_back(editor_.point(brick_, i, j, k));
         }
     const double weight = relative_weight();
     return editor_.remake(brick_, before_, after, [&](const CrossedEdge& edge) -> std::optional<NewCrossing> {
@@ -234,15 +291,19 @@ FilledSolid fill_gaps(const SampleSet& samples, std::span<const Ball> places, Ex
     radii.push_back(place.radius);
   }
   const auto touched = editor.bricks_near(centers, radii);
+  std::vector<std::uint64_t> bricks;
+  for (const auto& [key, near] : touched) bricks.push_back(key);
+  int widest_here = narrowest;
+  for (const double radius : radii) widest_here = std::max(widest_here, closing_radius(radius, samples.grid.spacing));
+  const InsideBits bits(editor, bricks, bricks_within(margin_of(widest_here)), context);
   std::vector<NewBlock> made(touched.size());
-  std::vector<double> filled(touched.size(), 0);
+  std::vector<std::vector<Vec3>> filled(touched.size());
   parallel_for(context, touched.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
-      made[t] = FilledBrick(editor, morton_decode(touched[t].first), places, touched[t].second).remake(filled[t]);
+      made[t] = FilledBrick(editor, bits, morton_decode(touched[t].first), places, touched[t].second).remake(filled[t]);
   });
-  FilledSolid result{editor.replace(made, context)};
-  const double h = samples.grid.spacing;
-  for (const double points : filled) result.volume += points * h * h * h;
+  FilledSolid result{editor.replace(made, context), {}};
+  for (const auto& points : filled) result.points.insert(result.points.end(), points.begin(), points.end());
   return result;
 }
 

@@ -2,6 +2,7 @@
 /// Gaps of a sampled solid that are too narrow for its grid or its mesh, filled in places.
 
 #include <span>
+#include <vector>
 
 #include "core/parallel.h"
 #include "grid/sample_set.h"
@@ -12,7 +13,7 @@ namespace evenmesh {
 /// A solid after filling.
 struct FilledSolid {
   SampleSet samples;
-  double volume = 0;  ///< that was filled, model units cubed
+  std::vector<Vec3> points;  ///< of the grid, that are inside now
 };
 
 /// Half the width of the gaps that a place of this radius fills, grid spacings: half the place's radius, 2 to 6.

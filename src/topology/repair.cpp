@@ -114,15 +114,19 @@ class Planner {
     return found;
   }
 
-  /// A new place, unless one is here already: that one grows, once per round. Whether it will be new.
+  /// A new place, unless one is here already: that one grows, once per round. Whether that is all to be done: else
+  /// seeds are needed, too.
   bool put_place(const Vec3& p) {
+    const double reach = options_.unresolved ? 0.25 * options_.edge : 0;
     bool met = false, is_new = true;
-    places_.near(p, 0, [&](std::uint32_t b) {
+    places_.near(p, reach, [&](std::uint32_t b) {
       Ball& place = repair_.places[b];
-      if (met || norm(p - place.center) > places_.balls()[b].radius) return;
+      if (met || norm(p - place.center) > places_.balls()[b].radius + reach) return;
+      const bool full = place.radius + 0.5 * options_.growth > options_.last_radius;
+      if (options_.unresolved && full && !grown_[b]) return;  // the next one stands beside it
       met = true;
-      is_new = false;
-      if (grown_[b] || place.radius + 0.5 * options_.growth > options_.last_radius) return;
+      is_new = options_.unresolved;
+      if (grown_[b] || full) return;
       grown_[b] = 1;
       place.radius += options_.growth;
       repair_.changed.push_back(b);

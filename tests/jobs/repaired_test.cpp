@@ -51,7 +51,7 @@ TEST(Repaired, ASolidBecomesItsOuterHull) {
 TEST(Repaired, KeepsTheUnitAndWhatWasSaid) {
   Shape shape = damaged_ball();
   shape.unit = LengthUnit::inch;
-  shape.findings.push_back(make_finding(FindingCode::no_area, {{"count", 1.0}}));
+  shape.findings.push_back(make_finding(FindingCode::no_area, {{"count", 1.0}, {"where", std::string()}}));
   for (const Hull hull : {Hull::outer, Hull::wrap}) {
     const Repaired r = repaired(shape, hull);
     EXPECT_EQ(r.shape.unit, LengthUnit::inch);

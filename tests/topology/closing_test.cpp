@@ -21,7 +21,7 @@ TEST(FillGaps, LeavesConvexSolidsAlone) {
   evenmesh::ExecutionContext context(2);
   const SampleSet ball = sampled_on("r - 1");
   const FilledSolid made = fill_gaps(ball, std::vector<Ball>{{{1, 0, 0}, 0.6}, {{0, -1, 0}, 0.4}}, context);
-  EXPECT_NEAR(made.volume, 0, 2e-3);
+  EXPECT_LT(made.points.size(), 3u);
   EXPECT_NEAR(made.samples.total_area, ball.total_area, 2e-3 * ball.total_area);
 }
 
@@ -35,7 +35,7 @@ TEST(FillGaps, JoinsBodiesThatNearlyTouchAndNothingFarther) {
     for (double z = -1; z <= 1; z += 0.2) places.push_back({{0, y, z}, 0.4});
   const FilledSolid made = fill_gaps(boxes, places, context);
   EXPECT_EQ(surface_components(made.samples, context).area.size(), 1u);
-  EXPECT_NEAR(made.volume, 0.15 * 4, 0.3);
+  EXPECT_NEAR(double(made.points.size()) * std::pow(made.samples.grid.spacing, 3), 0.15 * 4, 0.3);
   for (const SampleBlock& b : made.samples.blocks)
     for (std::uint32_t i = b.begin; i < b.end; ++i) {
       const Vec3 p = position(made.samples, b, i);
