@@ -31,7 +31,10 @@ class BrickSigns {
 
  private:
   static constexpr int volume = side * side * side;
-  static std::size_t index(int i, int j, int k) { return static_cast<std::size_t>((k * side + j) * side + i); }
+  static std::size_t index(int i, int j, int k) {
+    const int at = (k * side + j) * side + i;
+    return static_cast<std::size_t>(at);
+  }
   std::array<bool, volume> inside_{};
   std::array<std::uint32_t, 3 * volume> crossing_{};
 };

@@ -102,7 +102,8 @@ std::vector<ThinSpot> thin_spots(std::span<const NearPair> pairs, const Grid& gr
     const auto place = [&](const RayHit& hit) {
       std::array<double, 3> at{};
       at[a] = hit.cell + double(hit.t);
-      at[static_cast<std::size_t>(dexel_p_axis[a])] = pair.ray / brick_size;
+      const std::uint32_t p = pair.ray / brick_size;
+      at[static_cast<std::size_t>(dexel_p_axis[a])] = p;
       at[static_cast<std::size_t>(dexel_q_axis[a])] = slab * brick_size + pair.ray % brick_size;
       return grid.point(at[0], at[1], at[2]);
     };

@@ -100,7 +100,8 @@ class Window {
 
  private:
   std::size_t place(int i, int j, int k) const {
-    return static_cast<std::size_t>(((k + margin_) * side_ + j + margin_) * side_ + i + margin_);
+    const int at = ((k + margin_) * side_ + j + margin_) * side_ + i + margin_;
+    return static_cast<std::size_t>(at);
   }
   void load(const InsideBits& all, const SolidEditor::Brick& brick, std::array<int, 3> shift) {
     std::array<int, 3> lo{}, hi{};
@@ -230,7 +231,8 @@ class FilledBrick {
       }
   }
   static std::size_t index(int i, int j, int k) {
-    return static_cast<std::size_t>(((k + 1) * depths + j + 1) * depths + i + 1);
+    const int at = ((k + 1) * depths + j + 1) * depths + i + 1;
+    return static_cast<std::size_t>(at);
   }
   double depth(int i, int j, int k) const { return depth_[index(i, j, k)]; }
 
@@ -292,6 +294,7 @@ FilledSolid fill_gaps(const SampleSet& samples, std::span<const Ball> places, Ex
   }
   const auto touched = editor.bricks_near(centers, radii);
   std::vector<std::uint64_t> bricks;
+  bricks.reserve(touched.size());
   for (const auto& [key, near] : touched) bricks.push_back(key);
   int widest_here = narrowest;
   for (const double radius : radii) widest_here = std::max(widest_here, closing_radius(radius, samples.grid.spacing));
