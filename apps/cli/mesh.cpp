@@ -9,7 +9,8 @@ namespace evenmesh::cli {
 namespace {
 
 constexpr const char* inputs =
-    "mesh file (.stl .obj .ply .off .glb .3mf), points (.xyz .pts .pwn .csv .pcd .ply),\nscene (.json .csg), - for standard "
+    "mesh file (.stl .obj .ply .off .glb .3mf), points (.xyz .pts .pwn .csv .pcd .ply),\nscene (.json .csg), - for "
+    "standard "
     "input, or gallery:NAME";
 
 }  // namespace

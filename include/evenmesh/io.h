@@ -45,10 +45,10 @@ Mesh parse_mesh(std::string_view bytes, std::string_view name);
 /// Recognized by content first, extension second. Points that are not finite are left out.
 ///
 /// Text may begin with a line of titles (skipped) or with the number of points (PTS, PWN); as many lines with normals
-/// may follow the points (PWN). Three further columns, behind the coordinates or behind three colours, are normals where
-/// they have unit length (within 10 %, 99 of 100 that are not zero), and always in six columns of a ".pwn" file. All
-/// else is left out.
-/// A normal with an infinite component or NaN becomes zero: unknown. Where all are zero, there are none.
+/// may follow the points (PWN). Three further columns, behind the coordinates or behind three colours, are normals
+/// where they have unit length (within 10 %, 99 of 100 that are not zero), and always in six columns of a ".pwn" file.
+/// All else is left out. A normal with an infinite component or NaN becomes zero: unknown. Where all are zero, there
+/// are none.
 ///
 /// @param path  a file, or "-" for standard input
 /// @throws UnusableInput  one sentence that names the file and what is wrong with it: missing, a directory, empty, a

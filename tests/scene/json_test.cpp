@@ -29,7 +29,8 @@ TEST_F(Json, NameUnitsAndSchemaAtTheTop) {
   const std::string rest = R"(, "units": "mm", "$schema": "scene.schema.json", "mesh": "tetra.off"})";
   EXPECT_EQ(json(R"({"name": "part")" + rest).name, "part");
   EXPECT_EQ(json(R"({"mesh": "tetra.off"})").name, "scene.json");
-  expect_says(refusal(R"({"units": "miles", "mesh": "tetra.off"})"), "scene.json: units: is none of micron, mm, cm, m, in, ft");
+  expect_says(refusal(R"({"units": "miles", "mesh": "tetra.off"})"),
+              "scene.json: units: is none of micron, mm, cm, m, in, ft");
   expect_says(refusal(R"({"union": [{"mesh": "tetra.off", "units": "mm"}]})"),
               "scene.json: union[0]: has 'units', which is for the top");
 }
