@@ -23,7 +23,7 @@ constexpr int seed_rounds = 12;     ///< attempts to make every cell a disk with
 constexpr int patience = 3;         ///< rounds without a fifth fewer defects until seeds are given up
 constexpr double work_limit = 24;   ///< rounds on as many samples as the surface has, altogether
 constexpr double smallest_surface = 1e5;  ///< samples that such a round is counted as, at least
-constexpr double seed_limit = 3;          ///< of the vertices asked for: what the topology may come to need
+constexpr double seed_limit = 16;         ///< of the vertices asked for: what the topology may come to need
 /// Defects per vertex and ambiguous faces per sample, above which the grid does not resolve the solid. Some such faces
 /// are at sharp edges and where surface just reaches a layer of the grid; those do no harm, and there are no defects.
 constexpr double torn = 0.01, crowded = 0.003;

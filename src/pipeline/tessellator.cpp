@@ -21,6 +21,7 @@
 namespace evenmesh {
 namespace {
 
+constexpr double little_progress = 0.002;  ///< of a round of repair: there may be a few, or many
 constexpr std::size_t relaxing_evaluations = 5;
 constexpr double sheet_effort = 1.7;  ///< a small part of the time there: Q 0.005 higher for 10 % more of it
 
@@ -124,7 +125,7 @@ void Tessellator::relax_all(std::size_t count) {
 }
 
 void Tessellator::relax(std::size_t effort) {
-  timer.stage("relax", 0, [&] {
+  timer.stage("relax", little_progress, [&] {
     const bool lloyd = options.optimizer == Optimizer::lloyd;
     const auto relaxed = optimize(evaluator(), result.seeds,
                                   {lloyd, effort * relaxing_evaluations, options.tolerance, frozen_}, context);
