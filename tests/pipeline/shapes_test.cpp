@@ -192,7 +192,7 @@ TEST(TopologyRepair, WhatTheGridDoesNotResolveIsGivenUpAndSaid) {
         return norm(p) < 0.8 && s > 0.9;
       },
       Box{{-1, -1, -1}, {1, 1, 1}});
-  const MeshResult result = meshed(foam, {.vertices = 500, .resolution = 80, .quality = Quality::fast});
+  const MeshResult result = meshed(foam, {.vertices = 300, .resolution = 40, .quality = Quality::fast});
   EXPECT_TRUE(breaks_a_promise(result.report) || has_finding(result.report, FindingCode::gaps_filled) ||
               has_finding(result.report, FindingCode::small_components_dropped));
   EXPECT_LT(result.mesh.vertices.size(), 5000u);
