@@ -22,6 +22,16 @@ inline std::array<Vec3, 3> corners_of(const Mesh& mesh, std::size_t triangle) {
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
 
+/// Sum over all triangles, model units squared.
+inline double area_of(const Mesh& mesh) {
+  double area = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = corners_of(mesh, t);
+    area += triangle_area(a, b, c);
+  }
+  return area;
+}
+
 /// The point of a triangle that is nearest to p; the triangle may be degenerate.
 ///
 /// Error: some units in the last place of the largest coordinate difference.

@@ -63,6 +63,19 @@ std::int64_t SolidEditor::block_at(Brick brick) const {
   return it != keys_.end() && *it == key ? it - keys_.begin() : -1;
 }
 
+SolidEditor::Sums SolidEditor::sums_of(Brick brick) const {
+  const std::int64_t at = block_at(brick);
+  if (at < 0) return {};
+  Sums sums;
+  const SampleBlock& block = samples_.blocks[static_cast<std::size_t>(at)];
+  const std::span<const float> weights = samples_.weights();
+  for (std::uint32_t i = block.begin; i < block.end; ++i) {
+    sums.area += samples_.area[i];
+    sums.weight += weights[i];
+  }
+  return sums;
+}
+
 BrickSigns SolidEditor::signs(Brick brick) const {
   BrickSigns signs;
   if (const std::int64_t own = block_at(brick); own >= 0) {

@@ -66,6 +66,11 @@ class SolidEditor {
   explicit SolidEditor(const SampleSet& samples);
 
   const SampleSet& samples() const { return samples_; }
+  struct Sums {
+    double area = 0, weight = 0;  ///< model units squared
+  };
+  /// Of a brick's samples.
+  Sums sums_of(Brick brick) const;
   /// −1: it has no samples.
   std::int64_t block_at(Brick brick) const;
   /// A brick without crossings is inside or outside as a whole: as the last layer of the next brick towards −x that has

@@ -12,15 +12,6 @@
 namespace evenmesh {
 namespace {
 
-double area_of(const Mesh& mesh) {
-  double area = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto [a, b, c] = corners_of(mesh, t);
-    area += triangle_area(a, b, c);
-  }
-  return area;
-}
-
 /// The hull, decided: closed parts are a solid, whatever lies beside them, unless that is more.
 Hull decide(Hull hull, const Mesh& mesh, const MeshParts& parts, Repaired& r, ExecutionContext& context) {
   if (hull != Hull::automatic) return hull;

@@ -11,15 +11,6 @@
 namespace evenmesh {
 namespace {
 
-double area_of(const Mesh& mesh) {
-  double area = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto [a, b, c] = corners_of(mesh, t);
-    area += triangle_area(a, b, c);
-  }
-  return area;
-}
-
 void append(std::vector<MeshPiece>& to, const std::vector<MeshPiece>& more) {
   to.insert(to.end(), more.begin(), more.end());
   std::stable_sort(to.begin(), to.end(), [](const MeshPiece& a, const MeshPiece& b) { return a.size > b.size; });

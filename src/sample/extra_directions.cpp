@@ -69,15 +69,6 @@ double volume_along(const TriDexel& rays, std::size_t axis) {
   return cells * std::pow(rays.grid.spacing, 3);
 }
 
-double area_of(const Mesh& mesh) {
-  double area = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto [a, b, c] = corners_of(mesh, t);
-    area += triangle_area(a, b, c);
-  }
-  return area;
-}
-
 }  // namespace
 
 Solidity measure_solidity(const Mesh& mesh, ExecutionContext& context) {

@@ -37,17 +37,10 @@ class Union {
   void find_relative_weights() {
     std::vector<double> area(balls_.size(), 0), weight(balls_.size(), 0);
     for (const auto& [key, balls] : touched_) {
-      const std::int64_t at = editor_.block_at(morton_decode(key));
-      if (at < 0) continue;
-      const SampleBlock& block = samples_.blocks[static_cast<std::size_t>(at)];
-      double area_here = 0, weight_here = 0;
-      for (std::uint32_t i = block.begin; i < block.end; ++i) {
-        area_here += samples_.area[i];
-        weight_here += samples_.weight[i];
-      }
+      const SolidEditor::Sums here = editor_.sums_of(morton_decode(key));
       for (const std::uint32_t b : balls) {
-        area[b] += area_here;
-        weight[b] += weight_here;
+        area[b] += here.area;
+        weight[b] += here.weight;
       }
     }
     relative_weight_.resize(balls_.size());

@@ -258,15 +258,8 @@ class FilledBrick {
   double relative_weight() const {
     const SampleSet& samples = editor_.samples();
     if (samples.even()) return 1;
-    double area = 0, weight = 0;
-    if (const std::int64_t at = editor_.block_at(brick_); at >= 0) {
-      const SampleBlock& block = samples.blocks[static_cast<std::size_t>(at)];
-      for (std::uint32_t i = block.begin; i < block.end; ++i) {
-        area += samples.area[i];
-        weight += samples.weight[i];
-      }
-    }
-    return area > 0 ? weight / area : samples.total_weight / samples.total_area;
+    const SolidEditor::Sums here = editor_.sums_of(brick_);
+    return here.area > 0 ? here.weight / here.area : samples.total_weight / samples.total_area;
   }
 
   const SolidEditor& editor_;
