@@ -2,80 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
-#include "core/sums.h"
+#include "core/lbfgs.h"
 
 namespace evenmesh {
 namespace {
 
 using Vectors = std::vector<Vec3>;
-
-/// Vector arithmetic on all seeds at once.
-class Algebra {
- public:
-  explicit Algebra(ExecutionContext& context) : context_(context) {}
-  double dot_all(const Vectors& a, const Vectors& b) const {
-    return ordered_sum(context_, a.size(), [&](std::size_t i) { return dot(a[i], b[i]); });
-  }
-  template <typename Op>
-  void each(std::size_t count, const Op& op) const {
-    parallel_for(context_, count, 4096, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) op(i);
-    });
-  }
-
- private:
-  ExecutionContext& context_;
-};
-
-/// Limited-memory inverse Hessian, two-loop recursion (Nocedal 1980).
-class History {
- public:
-  explicit History(const Algebra& algebra) : algebra_(algebra) {}
-  void clear() { pairs_.clear(); }
-  void add(Vectors step, Vectors change) {
-    const double curvature = algebra_.dot_all(step, change);
-    if (!(curvature > 0)) return;
-    if (pairs_.size() == length) pairs_.pop_front();
-    pairs_.push_back({std::move(step), std::move(change), 1 / curvature});
-  }
-  /// −H·gradient, H starting from diag(inverse_diagonal) scaled to the last pair.
-  Vectors direction(const Vectors& gradient, const std::vector<double>& inverse_diagonal) const {
-    Vectors q = gradient;
-    std::vector<double> alpha(pairs_.size());
-    for (std::size_t p = pairs_.size(); p-- > 0;) {
-      const Pair& pair = pairs_[p];
-      alpha[p] = pair.inverse_curvature * algebra_.dot_all(pair.step, q);
-      algebra_.each(q.size(), [&](std::size_t i) { q[i] -= alpha[p] * pair.change[i]; });
-    }
-    double scale = 1;
-    if (!pairs_.empty()) {
-      const Pair& last = pairs_.back();
-      Vectors scaled(q.size());
-      algebra_.each(q.size(), [&](std::size_t i) { scaled[i] = inverse_diagonal[i] * last.change[i]; });
-      scale = 1 / (last.inverse_curvature * algebra_.dot_all(last.change, scaled));
-    }
-    algebra_.each(q.size(), [&](std::size_t i) { q[i] *= scale * inverse_diagonal[i]; });
-    for (std::size_t p = 0; p < pairs_.size(); ++p) {
-      const Pair& pair = pairs_[p];
-      const double beta = pair.inverse_curvature * algebra_.dot_all(pair.change, q);
-      algebra_.each(q.size(), [&](std::size_t i) { q[i] += (alpha[p] - beta) * pair.step[i]; });
-    }
-    algebra_.each(q.size(), [&](std::size_t i) { q[i] = -q[i]; });
-    return q;
-  }
-  bool empty() const { return pairs_.empty(); }
-
- private:
-  static constexpr std::size_t length = 5;
-  struct Pair {
-    Vectors step, change;
-    double inverse_curvature;
-  };
-  const Algebra& algebra_;
-  std::deque<Pair> pairs_;
-};
 
 /// No seed may move by more than `limit` in one step.
 void limit_steps(Vectors& steps, double limit) {
@@ -186,8 +119,8 @@ class Descent {
   const OptimizeOptions& options_;
   ExecutionContext& context_;
   const double area_;
-  const Algebra algebra_{context_};
-  History history_{algebra_};
+  const VariableAlgebra<Vec3> algebra_{context_};
+  LimitedMemoryHessian<Vec3> history_{algebra_};
   OptimizeResult result_;
   CellSums sums_, trial_sums_;
   Vectors gradient_, step_, trial_, trial_gradient_;

@@ -7,6 +7,7 @@
 #include "refine/fit.h"
 #include "refine/flips.h"
 #include "refine/polish.h"
+#include "refine/shape_smoothing.h"
 #include "refine/untangle.h"
 #include "refine/vertex_rings.h"
 #include "topology/ball_projector.h"
@@ -48,6 +49,8 @@ class Refinement {
       const std::size_t pairs = intersections(mesh).size();
       return {moved_back(std::move(mesh)), pairs};
     }
+    flip_to_delaunay(mesh, constraints, context_);
+    smooth_shapes(mesh, projector_.get(), draft_.sizing, {}, context_, constraints);
     flip_to_delaunay(mesh, constraints, context_);
     polish(mesh, projector_.get(), context_, constraints);
     flip_to_delaunay(mesh, constraints, context_);
