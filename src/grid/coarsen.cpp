@@ -1,5 +1,7 @@
 #include "grid/coarsen.h"
 
+#include <algorithm>
+
 #include "grid/blocks.h"
 
 namespace evenmesh {
@@ -103,6 +105,44 @@ SampleSet coarsen(const SampleSet& fine, ExecutionContext& context) {
     sum_area(coarse, context);
     return coarse;
   });
+}
+
+SampleSet one_sample_per_edge(const SampleSet& set, const ExecutionContext& context) {
+  std::vector<std::vector<std::uint32_t>> kept(set.blocks.size());
+  parallel_for(context, set.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> order;
+    for (std::size_t b = begin; b < end; ++b) {
+      order.resize(set.blocks[b].end - set.blocks[b].begin);
+      for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = set.blocks[b].begin + i;
+      std::stable_sort(order.begin(), order.end(),
+                       [&](auto i, auto j) { return set.edge[i].bits >> 1 < set.edge[j].bits >> 1; });
+      for (std::size_t i = 0; i < order.size();) {
+        std::size_t next = i + 1;
+        while (next < order.size() && set.edge[order[next]].bits >> 1 == set.edge[order[i]].bits >> 1) ++next;
+        if ((next - i) % 2 != 0) kept[b].push_back(order[i]);
+        i = next;
+      }
+    }
+  });
+  SampleSet result;
+  result.grid = set.grid;
+  result.cut_by_bounds = set.cut_by_bounds;
+  std::uint32_t sum = 0;
+  for (std::size_t b = 0; b < kept.size(); ++b) {
+    if (kept[b].empty()) continue;
+    const auto count = static_cast<std::uint32_t>(kept[b].size());
+    result.blocks.push_back({sum, sum + count, set.blocks[b].brick, {}});
+    sum += count;
+  }
+  std::erase_if(kept, [](const auto& list) { return list.empty(); });
+  resize_like(result, set, sum, context);
+  parallel_for(context, kept.size(), 32, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b)
+      for (std::size_t i = 0; i < kept[b].size(); ++i) copy_sample(set, kept[b][i], result, result.blocks[b].begin + i);
+  });
+  mark_axes(result, context);
+  sum_area(result, context);
+  return result;
 }
 
 }  // namespace evenmesh

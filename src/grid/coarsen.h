@@ -11,4 +11,9 @@ namespace evenmesh {
 /// O(samples).
 SampleSet coarsen(const SampleSet& fine, ExecutionContext& context = ExecutionContext::silent());
 
+/// The solid that a grid sees: of several samples on one edge, as coarsen() keeps them, one stays where they are an odd
+/// number, none where they are even. What is thinner than the grid's cells goes. Samples in a block are sorted by edge
+/// code. Cost: O(samples).
+SampleSet one_sample_per_edge(const SampleSet& set, const ExecutionContext& context = ExecutionContext::silent());
+
 }  // namespace evenmesh

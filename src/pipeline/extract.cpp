@@ -23,7 +23,9 @@ void make_vertices(const Tessellation& cells, const std::vector<Triangle>& trian
   for (std::size_t l = 0; l < index.size(); ++l) {
     if (index[l] == Draft::none) continue;
     index[l] = static_cast<std::uint32_t>(draft.mesh.vertices.size());
-    draft.mesh.vertices.push_back(options.placement == Placement::quadric ? shapes[l].vertex : shapes[l].centroid);
+    draft.mesh.vertices.push_back(cells.seeds_are_vertices                     ? cells.seeds.positions[l]
+                                  : options.placement == Placement::quadric ? shapes[l].vertex
+                                                                            : shapes[l].centroid);
   }
   draft.mesh.triangles.reserve(triangles.size());
   for (const Triangle& t : triangles) draft.mesh.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});

@@ -88,7 +88,7 @@ Tessellation tessellate(Sampling sampling, const MeshOptions& options, const Ker
                         ExecutionContext& context) {
   Tessellator state(std::move(sampling), options, kernels, timer, context);
   state.find_features();
-  state.relax_all(state.wanted());
+  if (!seed_by_levels(state)) state.relax_all(state.wanted());
   state.connect();
   if (!state.closed()) {
     repair_sheets(state);

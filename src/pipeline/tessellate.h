@@ -17,6 +17,7 @@ struct Tessellation {
   FeatureCurves features;      ///< those that are followed
   FeatureSeeds feature_seeds;  ///< the fixed ones among the seeds, and which of them are neighbours
   Seeds seeds;                 ///< one per label
+  bool seeds_are_vertices = false;  ///< seeds lie on the surface where vertices shall be; else cells tell that place
   std::vector<std::uint32_t> labels;  ///< one per sample
   LabelComplex complex;               ///< triangles of labels
   bool two_manifold = false;          ///< all cells fit together

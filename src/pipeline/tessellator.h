@@ -25,6 +25,8 @@ class Tessellator {
   void relax(std::size_t effort = 1);
   /// The same for the last seeds only, from index `first` on.
   void relax_last(std::size_t first);
+  /// That many evaluations for the seeds within a few edges of the places. Cost: that of the surface there.
+  void relax_around(std::span<const Vec3> places, std::size_t evaluations);
   /// Cells and their dual. Cells in several pieces are split: seeds for the others follow the given ones.
   void connect();
   /// Back to the seeds before connect(): it would split their cells again, and those of the pieces with them.
@@ -89,6 +91,12 @@ class Tessellator {
   std::unique_ptr<CellEvaluator> evaluator_;  ///< of the samples as they are; none yet after they changed
   std::vector<char> frozen_;                  ///< of a part, by seed
 };
+
+/// Spreads the seeds as asked for by way of a mesh of a quarter, a sixteenth … as many vertices: its triangles are made
+/// equilateral, its edges get a vertex in their middle, and what is left for the seeds' balance are the places where
+/// that does not follow the shape. Irregular vertices remain those of the coarsest mesh, nearly.
+/// @return false  where such a mesh cannot be had or strays too far from the shape: seeds are not changed
+bool seed_by_levels(Tessellator& state);
 
 /// Where the grid leaves the topology to chance in so many places that it does not resolve the solid, as of fractals
 /// and of parts that nearly touch everywhere: fills gaps that edges cannot go into, if they hide much surface; seeds

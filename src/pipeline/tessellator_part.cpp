@@ -44,6 +44,42 @@ std::unique_ptr<Tessellator> Tessellator::part_around(std::span<const Vec3> poin
   return part;
 }
 
+void Tessellator::relax_around(std::span<const Vec3> places, std::size_t evaluations) {
+  constexpr double free_within = 2.5, part_within = 5, seeds_within = 7;  // edges
+  if (places.empty()) return;
+  timer.stage("relax", 0, [&] {
+    const SampleSet& samples = result.sampling.samples;
+    double longest = edge();
+    for (const Vec3& p : places) longest = std::max(longest, result.sampling.sizing.edge(p));
+    const PointHash index(places, free_within * longest);
+    const auto is_near = [&](const Vec3& p, double edges) {
+      return index.near(p, edges * longest, [](std::uint32_t) { return true; });
+    };
+    std::vector<std::uint32_t> blocks, members;
+    for (std::uint32_t b = 0; b < samples.blocks.size(); ++b)
+      if (is_near(samples.block_center(samples.blocks[b]), part_within)) blocks.push_back(b);
+    SampleSet part = part_of(samples, blocks, context);
+    Seeds seeds;
+    std::vector<char> frozen;
+    for (std::uint32_t s = 0; s < result.seeds.size(); ++s) {
+      const Vec3& p = result.seeds.positions[s];
+      if (!is_near(p, seeds_within)) continue;
+      members.push_back(s);
+      seeds.positions.push_back(p);
+      if (result.seeds.is_fixed(s)) seeds.fixed.push_back(result.seeds.fixed[s]);
+      frozen.push_back(!is_near(p, free_within));
+    }
+    // What a mean cell is does not change.
+    const double share = static_cast<double>(members.size()) / static_cast<double>(result.seeds.size());
+    part.total_area *= share;
+    part.total_weight *= share;
+    const auto cells = kernels_.cells ? kernels_.cells->evaluator(part, context)
+                                      : std::make_unique<CpuCellEvaluator>(part, context);
+    optimize(*cells, seeds, {options.optimizer == Optimizer::lloyd, evaluations, options.tolerance, frozen}, context);
+    for (std::size_t i = 0; i < members.size(); ++i) result.seeds.positions[members[i]] = seeds.positions[i];
+  });
+}
+
 void Tessellator::take_seeds(Tessellator& part) {
   part.forget_split_cells();
   result.seeds = part.result.seeds;
