@@ -90,6 +90,28 @@ std::uint32_t segments_of(const FeatureCurve& curve, double edge) {
   return n;
 }
 
+/// @param segments  by curve: into how many pieces it is cut
+FeatureSeeds place(const FeatureCurves& features, std::vector<std::uint32_t> segments) {
+  FeatureSeeds seeds;
+  seeds.segments = std::move(segments);
+  const auto add = [&](const Vec3& p, Attachment::Kind kind, std::uint32_t index) {
+    seeds.seeds.positions.push_back(p);
+    seeds.seeds.fixed.push_back({kind, index});
+  };
+  for (std::uint32_t c = 0; c < features.corners.size(); ++c) add(features.corners[c], Attachment::Kind::corner, c);
+  for (std::uint32_t c = 0; c < features.curves.size(); ++c) {
+    const FeatureCurve& curve = features.curves[c];
+    const std::uint32_t n = seeds.segments[c];
+    seeds.first.push_back(static_cast<std::uint32_t>(seeds.size()));
+    for (std::uint32_t k = curve.from == FeatureCurve::none ? 0 : 1; k < n; ++k)
+      add(point_at(curve, curve.length() * k / n), Attachment::Kind::curve, c);
+    const double piece = curve.length() / n;
+    for (std::uint32_t k = 0; k < n; ++k)
+      seeds.edges.push_back({seed_at(features, seeds, c, piece * k), seed_at(features, seeds, c, piece * (k + 1))});
+  }
+  return seeds;
+}
+
 }  // namespace
 
 bool follows(const FeatureCurve& curve, double edge) {
@@ -97,29 +119,19 @@ bool follows(const FeatureCurve& curve, double edge) {
 }
 
 FeatureSeeds place_feature_seeds(const FeatureCurves& features, double edge) {
-  FeatureSeeds seeds;
-  const auto place = [&](const Vec3& p, Attachment::Kind kind, std::uint32_t index) {
-    seeds.seeds.positions.push_back(p);
-    seeds.seeds.fixed.push_back({kind, index});
-  };
-  for (std::uint32_t c = 0; c < features.corners.size(); ++c) place(features.corners[c], Attachment::Kind::corner, c);
+  std::vector<std::uint32_t> segments;
   std::set<std::pair<std::uint32_t, std::uint32_t>> joined;  // corners with an edge between them
-  for (std::uint32_t c = 0; c < features.curves.size(); ++c) {
-    const FeatureCurve& curve = features.curves[c];
-    const bool closed = curve.from == FeatureCurve::none;
-    std::uint32_t n = segments_of(curve, edge);
-    if (n == 1 && !joined.insert(std::minmax(curve.from, curve.to)).second) n = 2;
-    const auto first = static_cast<std::uint32_t>(seeds.size());
-    seeds.first.push_back(first);
-    seeds.segments.push_back(n);
-    for (std::uint32_t k = closed ? 0 : 1; k < n; ++k)
-      place(point_at(curve, curve.length() * k / n), Attachment::Kind::curve, c);
-    for (std::uint32_t k = 0; k < n; ++k) {
-      const double at = curve.length() / n;
-      seeds.edges.push_back({seed_at(features, seeds, c, at * k), seed_at(features, seeds, c, at * (k + 1))});
-    }
+  for (const FeatureCurve& curve : features.curves) {
+    segments.push_back(segments_of(curve, edge));
+    if (segments.back() == 1 && !joined.insert(std::minmax(curve.from, curve.to)).second) segments.back() = 2;
   }
-  return seeds;
+  return place(features, std::move(segments));
+}
+
+FeatureSeeds halve_spacing(const FeatureCurves& features, const FeatureSeeds& coarse) {
+  std::vector<std::uint32_t> segments = coarse.segments;
+  for (std::uint32_t& n : segments) n *= 2;
+  return place(features, std::move(segments));
 }
 
 void constrain_labels(const SampleSet& samples, const FeatureCurves& features, const FeatureSeeds& seeds,

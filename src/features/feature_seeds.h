@@ -25,6 +25,9 @@ bool follows(const FeatureCurve& curve, double edge);
 /// @param edge  wanted distance between neighbours, model units; curves are cut into equal pieces of about that
 FeatureSeeds place_feature_seeds(const FeatureCurves& features, double edge);
 
+/// Seeds on the same curves, twice as near to each other. @param coarse  seeds on `features`
+FeatureSeeds halve_spacing(const FeatureCurves& features, const FeatureSeeds& coarse);
+
 /// Gives the samples within one and a half grid cells of a curve to the curve's seed that is nearest along it. With
 /// that no other cell reaches across a feature curve, and neighbours along a curve are neighbours in the dual.
 ///

@@ -15,7 +15,9 @@ namespace {
 /// Numbers the labels that triangles use, and places a vertex for each.
 void make_vertices(const Tessellation& cells, const std::vector<Triangle>& triangles, const MeshOptions& options,
                    ExecutionContext& context, Draft& draft) {
-  const auto shapes = cell_shapes(cells.sampling.surface(), cells.labels, cells.seeds, context);
+  const auto shapes = cells.seeds_are_vertices
+                          ? std::vector<CellShape>{}
+                          : cell_shapes(cells.sampling.surface(), cells.labels, cells.seeds, context);
   std::vector<std::uint32_t>& index = draft.vertex_of_label;
   index.assign(cells.seeds.size(), Draft::none);
   for (const Triangle& t : triangles)

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <ctime>
+#include <numeric>
 
+#include "core/random.h"
 #include "geometry/subdivide.h"
 #include "grid/coarsen.h"
-#include "evenmesh/measure.h"
 #include "pipeline/draft.h"
 #include "pipeline/tessellator.h"
 #include "refine/flips.h"
@@ -16,164 +15,263 @@
 
 namespace evenmesh {
 namespace {
-static double env(const char* n, double d) { const char* e = std::getenv(n); return e ? std::atof(e) : d; }
-static double cpu() { timespec t; clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t); return t.tv_sec + 1e-9 * t.tv_nsec; }
+static double env(const char* n, double d) {
+  const char* e = std::getenv(n);
+  return e ? std::atof(e) : d;
+}
 
-constexpr double samples_per_seed = 80;
+constexpr double min_base = 3000;        ///< vertices of the coarsest mesh
+constexpr double samples_per_seed = 80;  ///< wanted on every level
+constexpr double shortest_curve = 0.7;   ///< that a level follows, in edges
+constexpr double smoothing_size_weight = 0.1;
+constexpr std::size_t base_evaluations = 40, level_evaluations = 12, middle_evaluations = 8;
+constexpr double count_tolerance = 0.001;  ///< of the vertices asked for
+
+/// Cells that do not suit their seeds, where a coarser mesh could not follow the shape.
+constexpr double too_heavy = 2.5, too_light = 0.25;  ///< mass, compared with what it should be
+constexpr double too_far = 0.5;                      ///< of the centroid from the seed, in edges
+constexpr std::size_t misfit_evaluations = 15;
+
+/// By seed, the mass its cell should have.
+std::vector<double> wanted_masses(const SampleSet& samples, std::span<const Vec3> seeds, const SizingField& sizing) {
+  std::vector<double> mass;
+  for (const Vec3& s : seeds) mass.push_back(sizing.uniform() ? 1 : 1 / (sizing.edge(s) * sizing.edge(s)));
+  const double scale = samples.total_weight / std::accumulate(mass.begin(), mass.end(), 0.0);
+  for (double& m : mass) m *= scale;
+  return mass;
+}
+
+/// Seeds more in heavy cells, fewer in light ones, and balance around these and around those that are off.
+class MisfitRepair {
+ public:
+  explicit MisfitRepair(Tessellator& state) : state_(state), seeds_(state.result.seeds.positions) {}
+
+  void run(std::size_t least, std::size_t most) {
+    change_misfits();
+    const std::size_t count = std::clamp(seeds_.size(), least, most);
+    if (count != seeds_.size()) {
+      const std::vector<Vec3> before = seeds_;
+      state_.adjust_count(count, 3);
+      // Those that stay keep their order.
+      std::size_t same = 0;
+      for (const Vec3& p : before)
+        if (same < seeds_.size() && p == seeds_[same])
+          ++same;
+        else
+          places_.push_back(p);
+      places_.insert(places_.end(), seeds_.begin() + static_cast<std::ptrdiff_t>(same), seeds_.end());
+    }
+    state_.context.log(fmt::format("levels: {} seeds, {} places do not suit them", seeds_.size(), places_.size()));
+    state_.relax_around(places_, misfit_evaluations);
+    state_.settle();
+  }
+
+ private:
+  void change_misfits() {
+    const SampleSet& samples = state_.result.sampling.samples;
+    const SizingField& sizing = state_.result.sampling.sizing;
+    CellSums sums;
+    state_.evaluator().evaluate(seeds_, sums);
+    state_.result.energy_ratio = energy_ratio(sums.energy, seeds_.size(), samples.total_area);
+    const std::vector<double> wanted = wanted_masses(samples, seeds_, sizing);
+    std::vector<Vec3> kept, added;
+    for (std::size_t i = 0; i < seeds_.size(); ++i) {
+      const bool fixed = state_.result.seeds.is_fixed(i);
+      const double share = sums.mass[i] / wanted[i], edge = sizing.edge(seeds_[i]);
+      const bool light = !fixed && share < too_light;
+      const Vec3 off = share > 0 ? (1 / sums.mass[i]) * sums.moment[i] : Vec3{};
+      if (light || share > too_heavy || (!fixed && norm(off) > too_far * edge)) places_.push_back(seeds_[i]);
+      if (!light) kept.push_back(seeds_[i]);
+      Random random(state_.options.seed + i);
+      for (double left = share; left > too_heavy; left -= 1) {
+        const double x = random.gaussian(), y = random.gaussian(), z = random.gaussian();
+        added.push_back(seeds_[i] + off + 0.3 * edge * normalized(Vec3{x, y, z}));
+      }
+    }
+    seeds_ = std::move(kept);
+    seeds_.insert(seeds_.end(), added.begin(), added.end());
+    places_.insert(places_.end(), added.begin(), added.end());
+  }
+
+  Tessellator& state_;
+  std::vector<Vec3>& seeds_;
+  std::vector<Vec3> places_;
+};
 
 class Levels {
  public:
-  explicit Levels(Tessellator& finest) : finest_(finest), context_(finest.context), options_(finest.options) {
-    options_.connect = Connect::complex;
+  /// @param levels  above the finest
+  Levels(Tessellator& finest, std::size_t levels)
+      : finest_(finest), context_(finest.context), options_(finest.options), samples_(levels + 1) {
+    const double less = count_tolerance * static_cast<double>(finest.wanted());
+    counts_.push_back(finest.wanted() - static_cast<std::size_t>(less));
+    for (std::size_t l = 0; l < levels; ++l) counts_.push_back(parent_count(counts_.back(), 2));
   }
 
   bool run() {
-    std::size_t levels = 0;
-    const double base = env("EM_BASE", 3000);
-    for (double n = double(finest_.wanted()) / 4; n >= base; n /= 4) ++levels;
-    if (levels == 0) return false;
-    counts_.push_back(finest_.wanted() - std::size_t(env("EM_RES", 0.001) * finest_.wanted()));
-    for (std::size_t l = 0; l < levels; ++l) counts_.push_back((counts_.back() + 6) / 4);
-    make_samples(levels);
-    std::unique_ptr<Tessellator> level = tessellator(levels);
-    level->relax_all(counts_[levels]);
-    level->connect();
-    if (!level->fits()) repair_solid(*level);
-    if (!level->fits()) { std::fprintf(stderr, "levels: base has %zu defects\n", level->defects().size()); return false; }
-    const std::int64_t euler = level->result.complex.surface_euler;
-    for (std::size_t l = 1; l <= levels; ++l) counts_[l] = std::size_t((std::int64_t(counts_[l - 1]) + 3 * euler + 2) / 4);
-    if (std::llabs(std::int64_t(counts_[levels]) - std::int64_t(level->given())) > 0) {
-      level->forget_split_cells();
-      level->adjust_and_relax(counts_[levels]);
-      level->connect();
-      if (!level->fits()) return false;
-    }
-    std::fprintf(stderr, "levels: base %zu seeds %zu samples, cpu %.3f\n", level->result.seeds.size(), level->result.sampling.samples.size(), cpu());
-    for (std::size_t l = levels; l-- > 0;) {
-      std::vector<Vec3> seeds = subdivided(*level);
-      std::unique_ptr<Tessellator> next;
-      if (l > 0) next = tessellator(l);
-      Tessellator& t = next ? *next : finest_;
-      t.result.seeds = Seeds(std::move(seeds));
-      t.result.seeds_are_vertices = true;
-      repair_tips(t, counts_[l]);
-      if (l == 0) break;
-      t.connect();
-      if (!t.fits()) repair_solid(t);
-      if (!t.fits()) { std::fprintf(stderr, "levels: level %zu has %zu defects\n", l, t.defects().size()); return false; }
+    const std::size_t coarsest = samples_.size() - 1;
+    coarsen_samples();
+    std::unique_ptr<Tessellator> level = make_base();
+    if (!level) return false;
+    finest_.result.energies = level->result.energies;
+    for (std::size_t l = coarsest; l-- > 0;) {
+      Draft mesh = smoothed(*level, l + 1 == coarsest ? base_evaluations : level_evaluations);
+      std::unique_ptr<Tessellator> next = l > 0 ? make_level(l) : nullptr;
+      Tessellator& finer = next ? *next : finest_;
+      seed_from(std::move(mesh), *level, finer);
+      const double n = static_cast<double>(counts_[l]);
+      MisfitRepair(finer).run(counts_[l], static_cast<std::size_t>((1 + 2 * count_tolerance) * n));
+      if (next && !connected(*next)) return false;
       level = std::move(next);
     }
     return true;
   }
 
  private:
-  void make_samples(std::size_t levels) {
-    sets_.resize(levels + 1);
-    const SampleSet* from = &finest_.result.sampling.samples;
-    raw_.push_back(nullptr);
-    for (std::size_t l = 1; l <= levels; ++l) {
-      if (double(from->size()) / 4 >= samples_per_seed * double(counts_[l])) {
-        raw_.push_back(std::make_unique<SampleSet>(coarsen(*from, context_)));
-        from = raw_.back().get();
-      } else
-        raw_.push_back(nullptr);
-      sets_[l] = one_sample_per_edge(*from, context_);
-    }
-  }
-  std::unique_ptr<Tessellator> tessellator(std::size_t l) {
-    Sampling sampling;
-    sampling.plan = finest_.result.sampling.plan;
-    sampling.plan.vertices = counts_[l];
-    sampling.samples = sets_[l];
-    sampling.sizing = finest_.result.sampling.sizing.with_mean(edge_length_of(sets_[l].total_area, double(counts_[l])));
-    return std::make_unique<Tessellator>(std::move(sampling), options_, kernels_, finest_.timer, context_);
+  /// Of a mesh that has so many with a vertex in the middle of every edge.
+  static std::size_t parent_count(std::size_t count, std::int64_t euler) {
+    return static_cast<std::size_t>(std::max<std::int64_t>(4, (static_cast<std::int64_t>(count) + 3 * euler + 2) / 4));
   }
 
-  void dbg(const char* what, const Mesh& m) { const auto q = measure_quality(m, context_); std::fprintf(stderr, "levels: %s %zu Q %.4f min %.3f irr %.4f ecv %.4f cpu %.3f\n", what, q.vertices, q.q_avg, q.q_min, q.irregular_ratio, q.edge_length_cv, cpu()); }
-
-  std::vector<Vec3> subdivided(const Tessellator& level) {
-    Draft draft = extract(level.result, options_, context_);
-    const auto projector = make_projector(level.result.sampling.samples);
-    flip_to_delaunay(draft.mesh, draft.constraints, context_);
-    dbg("extracted", draft.mesh);
-    smooth(draft, *projector, std::size_t(env("EM_LEV0", 40)));
-    flip_to_delaunay(draft.mesh, draft.constraints, context_);
-    dbg("smoothed", draft.mesh);
-    draft.mesh = subdivide(draft.mesh, context_).mesh;
-    draft.sizing = draft.sizing.with_mean(0.5 * draft.sizing.mean());
-    const auto fine = make_projector(sets_[0].size() ? sets_[0] : finest_.result.sampling.samples);
-    const std::size_t ev = std::size_t(env("EM_LEV1", 20));
-    if (ev == 0) {
-      for (Vec3& v : draft.mesh.vertices) v = fine->project(v, 0.5 * draft.sizing.edge(v));
-    } else smooth(draft, *fine, ev);
-    dbg("subdivided", draft.mesh);
-    return std::move(draft.mesh.vertices);
-  }
-  void smooth(Draft& draft, const Projector& projector, std::size_t evaluations) {
-    ShapeSmoothingOptions o;
-    o.evaluations = evaluations;
-    o.size_weight = env("EM_LMU", 0.1);
-    smooth_shapes(draft.mesh, &projector, draft.sizing, o, context_, draft.constraints);
-  }
-
-  void repair_tips(Tessellator& t, std::size_t count) {
-    const double heavy = env("EM_HEAVY", 2.0), light = env("EM_LIGHT", 0.25), off = env("EM_OFF", 0.35);
-    CellSums sums;
-    std::vector<Vec3>& x = t.result.seeds.positions;
-    t.evaluator().evaluate(x, sums);
-    const SampleSet& samples = t.result.sampling.samples;
-    const double mean = samples.total_weight / double(x.size());
-    const double edge = t.edge();
-    std::vector<Vec3> places, kept, added;
-    std::size_t removed = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double r = sums.mass[i] / mean;
-      if (r < light) { places.push_back(x[i]); ++removed; continue; }
-      const Vec3 shift = (1 / sums.mass[i]) * sums.moment[i];
-      if (r > heavy || norm(shift) > off * edge) places.push_back(x[i]);
-      double m = r;
-      int k = 0;
-      for (; m > heavy; m -= 1) { added.push_back(x[i] + shift + 0.3 * edge * normalized(Vec3{double((i * 7 + k * 3) % 5) - 2, double((i * 3 + k) % 5) - 2, double((i + k * 11) % 5) - 1.9})); ++k; }
-      kept.push_back(x[i]);
-    }
-    const std::size_t n0 = x.size();
-    x = kept;
-    x.insert(x.end(), added.begin(), added.end());
-    places.insert(places.end(), added.begin(), added.end());
-    // to the count: exactly
-    std::vector<Vec3> before = x;
-    const std::size_t now = x.size();
-    const std::size_t most = count + std::size_t(2 * env("EM_RES", 0.001) * finest_.wanted() * count / finest_.wanted());
-    count = std::clamp(now, count, most);
-    if (now != count) {
-      t.adjust_count(count, 3);
-      // changed places
-      if (count > now) for (std::size_t i = now; i < t.result.seeds.size(); ++i) places.push_back(t.result.seeds.positions[i]);
-      else {
-        std::size_t j = 0;
-        for (std::size_t i = 0; i < before.size(); ++i)
-          if (j < count && before[i] == t.result.seeds.positions[j]) ++j; else places.push_back(before[i]);
+  void coarsen_samples() {
+    finest_.timer.stage("relax", 0, [&] {
+      std::vector<SampleSet> thinner;
+      thinner.reserve(samples_.size());
+      const SampleSet* from = &finest_.result.sampling.samples;
+      for (std::size_t l = 1; l < samples_.size(); ++l) {
+        if (static_cast<double>(from->size()) / 4 >= samples_per_seed * static_cast<double>(counts_[l]))
+          from = &thinner.emplace_back(coarsen(*from, context_));
+        samples_[l] = one_sample_per_edge(*from, context_);
       }
+    });
+  }
+
+  std::unique_ptr<Tessellator> make_level(std::size_t l) {
+    const Sampling& whole = finest_.result.sampling;
+    Sampling sampling;
+    sampling.plan = whole.plan;
+    sampling.plan.vertices = counts_[l];
+    sampling.samples = std::move(samples_[l]);
+    sampling.sizing =
+        whole.sizing.with_mean(edge_length_of(sampling.samples.total_area, static_cast<double>(counts_[l])));
+    auto level =
+        std::make_unique<Tessellator>(std::move(sampling), options_, finest_.kernels(), finest_.timer, context_);
+    level->result.features = finest_.result.features;
+    return level;
+  }
+
+  /// The coarsest mesh, with as many vertices as will make those asked for.
+  std::unique_ptr<Tessellator> make_base() {
+    auto base = make_level(samples_.size() - 1);
+    base->result.feature_seeds = place_feature_seeds(base->result.features, base->result.sampling.sizing.mean());
+    base->relax_all(base->wanted());
+    if (!connected(*base)) return nullptr;
+    for (std::size_t l = 1; l < counts_.size(); ++l)
+      counts_[l] = parent_count(counts_[l - 1], base->result.complex.surface_euler);
+    if (counts_.back() == base->result.seeds.size()) return base;
+    base->forget_split_cells();
+    base->adjust_and_relax(std::max(counts_.back(), base->fixed() + 4));
+    if (!connected(*base)) return nullptr;
+    return base;
+  }
+
+  bool connected(Tessellator& level) const {
+    level.connect();
+    if (!level.fits()) repair_solid(level);
+    if (!level.fits())
+      context_.log(fmt::format("levels: {} defects among {} cells", level.defects().size(), level.result.seeds.size()));
+    return level.fits();
+  }
+
+  Draft smoothed(const Tessellator& level, std::size_t evaluations) const {
+    return finest_.timer.stage("relax", 0, [&] {
+      Draft draft = extract(level.result, options_, context_);
+      flip_to_delaunay(draft.mesh, draft.constraints, context_);
+      smooth(draft, level.result.sampling.samples, evaluations);
+      flip_to_delaunay(draft.mesh, draft.constraints, context_);
+      return draft;
+    });
+  }
+  void smooth(Draft& draft, const SampleSet& samples, std::size_t evaluations) const {
+    const auto projector = make_projector(samples);
+    const ShapeSmoothingOptions options{.size_weight = env("EM_LMU", smoothing_size_weight), .evaluations = evaluations};
+    smooth_shapes(draft.mesh, projector.get(), draft.sizing, options, context_, draft.constraints);
+  }
+
+  /// Seeds where a mesh with a vertex in the middle of every edge has them; on feature curves evenly spaced.
+  void seed_from(Draft draft, const Tessellator& coarse, Tessellator& finer) const {
+    finest_.timer.stage("relax", 0, [&] {
+      SubdividedMesh halved = subdivide(draft.mesh, context_);
+      VertexConstraints& constraints = draft.constraints;
+      std::vector<char> on_curve(halved.mesh.vertices.size(), 0);
+      for (std::size_t l = 0; l < coarse.fixed(); ++l)
+        if (const std::uint32_t v = draft.vertex_of_label[l]; v != Draft::none) on_curve[v] = 1;
+      if (!constraints.curve.empty()) halve_constraints(halved, draft, on_curve);
+      draft.mesh = std::move(halved.mesh);
+      draft.sizing = draft.sizing.with_mean(0.5 * draft.sizing.mean());
+      smooth(draft, finer.result.sampling.samples, middle_evaluations);
+      finer.result.feature_seeds = halve_spacing(coarse.result.features, coarse.result.feature_seeds);
+      finer.result.seeds = finer.result.feature_seeds.seeds;
+      for (std::size_t v = 0; v < on_curve.size(); ++v)
+        if (!on_curve[v]) finer.result.seeds.positions.push_back(draft.mesh.vertices[v]);
+      finer.result.seeds_are_vertices = true;
+    });
+  }
+  static void halve_constraints(const SubdividedMesh& halved, Draft& draft, std::vector<char>& on_curve) {
+    VertexConstraints& constraints = draft.constraints;
+    const auto old = static_cast<std::uint32_t>(constraints.curve.size());
+    constraints.curve.resize(halved.mesh.vertices.size(), VertexConstraints::free);
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    for (std::uint32_t e = 0; e < halved.edges.size(); ++e) {
+      const auto& [a, b] = halved.edges[e];
+      if (!constraints.edge(a, b)) continue;
+      const std::uint32_t middle = old + e;
+      on_curve[middle] = 1;
+      // Which curve joins two corners does not matter: the middle stays where it is.
+      constraints.curve[middle] = VertexConstraints::corner;
+      for (const std::uint32_t end : {a, b})
+        if (constraints.curve[end] < VertexConstraints::corner) constraints.curve[middle] = constraints.curve[end];
+      edges.push_back({a, middle});
+      edges.push_back({b, middle});
     }
-    std::fprintf(stderr, "levels: tips: %zu seeds, %zu added, %zu removed, adjust %ld, %zu places, cpu %.3f\n", n0, added.size(), removed, long(count) - long(now), places.size(), cpu());
-    t.relax_around(places, std::size_t(env("EM_TIPEV", 15)));
-    std::fprintf(stderr, "levels: tips done cpu %.3f\n", cpu());
+    std::sort(edges.begin(), edges.end());
+    constraints.edges = std::move(edges);
   }
 
   Tessellator& finest_;
   ExecutionContext& context_;
   MeshOptions options_;
-  Kernels kernels_;
   std::vector<std::size_t> counts_;  ///< of vertices, by level, the finest first
-  std::vector<std::unique_ptr<SampleSet>> raw_;
-  std::vector<SampleSet> sets_;
+  std::vector<SampleSet> samples_;   ///< by level, from 1 on; moved from once a level is made
 };
+
+/// As many as leave enough vertices, and edges short enough for all feature curves, on the coarsest.
+std::size_t count_levels(const Tessellator& finest) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const FeatureCurve& curve : finest.result.features.curves) shortest = std::min(shortest, curve.length());
+  std::size_t levels = 0;
+  double edge = finest.result.sampling.sizing.mean();
+  for (auto n = static_cast<double>(finest.wanted());; ++levels) {
+    n /= 4;
+    edge *= 2;
+    if (n < env("EM_BASE", min_base) || shortest < shortest_curve * edge) return levels;
+  }
+}
 
 }  // namespace
 
 bool seed_by_levels(Tessellator& state) {
-  if (!state.closed() || state.fixed() > 0 || env("EM_LEVELS", 1) == 0) return false;
-  return Levels(state).run();
+  const MeshOptions& o = state.options;
+  if (!state.closed() || o.start != Start::coarse_to_fine || o.connect != Connect::complex ||
+      o.placement != Placement::quadric || env("EM_LEVELS", 1) == 0)
+    return false;
+  const std::size_t levels = count_levels(state);
+  if (levels == 0) return false;
+  const FeatureSeeds feature_seeds = state.result.feature_seeds;
+  if (Levels(state, levels).run()) return true;
+  state.context.log("levels: seeds are spread without");
+  state.result.feature_seeds = feature_seeds;
+  return false;
 }
 
 }  // namespace evenmesh

@@ -1,5 +1,8 @@
 #include "pipeline/refine.h"
 
+#include <cstdio>
+#include <ctime>
+#include <cstdlib>
 #include <algorithm>
 #include <array>
 
@@ -49,13 +52,16 @@ class Refinement {
       const std::size_t pairs = intersections(mesh).size();
       return {moved_back(std::move(mesh)), pairs};
     }
+    dbg("extracted");
     flip_to_delaunay(mesh, constraints, context_);
-    smooth_shapes(mesh, projector_.get(), draft_.sizing, {}, context_, constraints);
+    smooth_shapes(mesh, projector_.get(), draft_.sizing, {.size_weight = env("EM_MU", 0.2), .evaluations = std::size_t(env("EM_EV", 20))}, context_, constraints);
     flip_to_delaunay(mesh, constraints, context_);
     polish(mesh, projector_.get(), context_, constraints);
     flip_to_delaunay(mesh, constraints, context_);
+    dbg("smoothed, polished");
     release_features();
     if (options_.placement == Placement::quadric) fit();
+    dbg("fitted");
     finish_projection();
     if (!constraints.curve.empty())
       for (const auto& [s, t] : intersections(mesh)) constraints.release(mesh, std::array{s, t});
@@ -79,6 +85,9 @@ class Refinement {
     return self_intersections(mesh, context_);
   }
 
+  static double env(const char* n, double d) { const char* e = std::getenv(n); return e ? std::atof(e) : d; }
+  static double cpu() { timespec t; clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t); return t.tv_sec + 1e-9 * t.tv_nsec; }
+  void dbg(const char* what) { const auto q = measure_quality(draft_.mesh, context_); std::fprintf(stderr, "dbg %s Q %.4f min %.3f irr %.4f ecv %.4f cpu %.3f\n", what, q.q_avg, q.q_min, q.irregular_ratio, q.edge_length_cv, cpu()); }
   /// Where curves are so near to each other, or meet at so acute an angle, that triangles between them are slivers,
   /// regular triangles come first.
   void release_features() {

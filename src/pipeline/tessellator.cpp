@@ -108,6 +108,8 @@ void Tessellator::keep_long_features(double edge) {
 }
 
 void Tessellator::relax_all(std::size_t count) {
+  settled_.clear();
+  result.seeds_are_vertices = false;
   timer.stage("relax", closed() ? 0.6 : 0.5, [&] {
     RelaxOptions relax = relax_options(options, result.sampling.hidden_area > 0);
     if (!closed()) relax.effort *= sheet_effort;
@@ -125,6 +127,11 @@ void Tessellator::relax_all(std::size_t count) {
 }
 
 void Tessellator::relax(std::size_t effort) {
+  if (!settled_.empty()) {
+    relax_around(unsettled(), effort * relaxing_evaluations);
+    settle();
+    return;
+  }
   timer.stage("relax", little_progress, [&] {
     const bool lloyd = options.optimizer == Optimizer::lloyd;
     const auto relaxed = optimize(evaluator(), result.seeds,

@@ -21,12 +21,15 @@ class Tessellator {
   void find_features();
   /// Spreads `count` seeds from nothing.
   void relax_all(std::size_t count);
-  /// A few evaluations for the seeds as they are. @param effort  times as many
+  /// A few evaluations for the seeds as they are; of settled seeds, for those around what has changed since.
+  /// @param effort  times as many
   void relax(std::size_t effort = 1);
   /// The same for the last seeds only, from index `first` on.
   void relax_last(std::size_t first);
   /// That many evaluations for the seeds within a few edges of the places. Cost: that of the surface there.
   void relax_around(std::span<const Vec3> places, std::size_t evaluations);
+  /// These seeds are in balance, though of another energy: from now on only what changes is relaxed.
+  void settle();
   /// Cells and their dual. Cells in several pieces are split: seeds for the others follow the given ones.
   void connect();
   /// Back to the seeds before connect(): it would split their cells again, and those of the pieces with them.
@@ -72,6 +75,7 @@ class Tessellator {
 
   Tessellation result;
   CellEvaluator& evaluator();
+  const Kernels& kernels() const { return kernels_; }
   const MeshOptions& options;
   StageTimer& timer;
   ExecutionContext& context;
@@ -86,10 +90,12 @@ class Tessellator {
   void forget_incomplete_cells();
   bool is_frozen(std::size_t seed) const { return seed < frozen_.size() && frozen_[seed] != 0; }
   void refill_idle_seeds();
+  std::vector<Vec3> unsettled() const;
 
   const Kernels& kernels_;
   std::unique_ptr<CellEvaluator> evaluator_;  ///< of the samples as they are; none yet after they changed
   std::vector<char> frozen_;                  ///< of a part, by seed
+  std::vector<Vec3> settled_;                 ///< seeds in balance, sorted; none: relaxing them is left to the energy
 };
 
 /// Spreads the seeds as asked for by way of a mesh of a quarter, a sixteenth … as many vertices: its triangles are made

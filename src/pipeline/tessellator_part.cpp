@@ -80,6 +80,28 @@ void Tessellator::relax_around(std::span<const Vec3> places, std::size_t evaluat
   });
 }
 
+namespace {
+
+bool comes_before(const Vec3& p, const Vec3& q) {
+  return std::array{p.x, p.y, p.z} < std::array{q.x, q.y, q.z};
+}
+
+}  // namespace
+
+void Tessellator::settle() {
+  settled_ = result.seeds.positions;
+  std::sort(settled_.begin(), settled_.end(), comes_before);
+}
+
+/// Seeds that are new or moved since settle(), and places of those that were there then.
+std::vector<Vec3> Tessellator::unsettled() const {
+  std::vector<Vec3> now = result.seeds.positions, places;
+  std::sort(now.begin(), now.end(), comes_before);
+  std::set_symmetric_difference(now.begin(), now.end(), settled_.begin(), settled_.end(), std::back_inserter(places),
+                                comes_before);
+  return places;
+}
+
 void Tessellator::take_seeds(Tessellator& part) {
   part.forget_split_cells();
   result.seeds = part.result.seeds;
