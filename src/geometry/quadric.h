@@ -39,6 +39,14 @@ class Quadric {
   double weight() const { return weight_; }        ///< of all planes
   Vec3 mean() const { return moment_ / weight_; }  ///< of the planes' points p
 
+  /// Σ w (n·(x − p))², less what it is at the origin; and half its gradient.
+  double excess(const Vec3& x) const { return dot(x, half_gradient(x) - b_); }
+  Vec3 half_gradient(const Vec3& x) const {
+    return Vec3{a_[0] * x.x + a_[1] * x.y + a_[2] * x.z, a_[1] * x.x + a_[3] * x.y + a_[4] * x.z,
+                a_[2] * x.x + a_[4] * x.y + a_[5] * x.z} -
+           b_;
+  }
+
   /// The minimum. There has to be one: planes of three directions, or a point; otherwise the result is not finite.
   Vec3 minimum() const;
   /// The point nearest to mean() among those where the planes meet as well as they can. Directions in which they hardly

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/tessellate.h"
+#include "refine/shape_smoothing.h"
 #include "refine/vertex_constraints.h"
 
 namespace evenmesh {
@@ -19,6 +20,7 @@ struct Draft {
   std::vector<std::uint32_t> vertex_of_label;  ///< none: no triangle has it
   /// Of sheets: vertices at the rim, and their place on it.
   std::vector<std::pair<std::uint32_t, Vec3>> boundary;
+  std::vector<CellPlanes> planes;        ///< by vertex: of its cell
   SizingField sizing;                    ///< for as many vertices as there are
   std::size_t two_triangle_spheres = 0;  ///< components of two triangles, left out
   std::size_t cuts = 0;                  ///< vertices that were split where umbrellas meet

@@ -15,9 +15,7 @@ namespace {
 /// Numbers the labels that triangles use, and places a vertex for each.
 void make_vertices(const Tessellation& cells, const std::vector<Triangle>& triangles, const MeshOptions& options,
                    ExecutionContext& context, Draft& draft) {
-  const auto shapes = cells.seeds_are_vertices
-                          ? std::vector<CellShape>{}
-                          : cell_shapes(cells.sampling.surface(), cells.labels, cells.seeds, context);
+  const auto shapes = cell_shapes(cells.sampling.surface(), cells.labels, cells.seeds, context);
   std::vector<std::uint32_t>& index = draft.vertex_of_label;
   index.assign(cells.seeds.size(), Draft::none);
   for (const Triangle& t : triangles)
@@ -25,6 +23,7 @@ void make_vertices(const Tessellation& cells, const std::vector<Triangle>& trian
   for (std::size_t l = 0; l < index.size(); ++l) {
     if (index[l] == Draft::none) continue;
     index[l] = static_cast<std::uint32_t>(draft.mesh.vertices.size());
+    draft.planes.push_back({cells.seeds.positions[l], shapes[l].planes});
     draft.mesh.vertices.push_back(cells.seeds_are_vertices                     ? cells.seeds.positions[l]
                                   : options.placement == Placement::quadric ? shapes[l].vertex
                                                                             : shapes[l].centroid);

@@ -44,7 +44,9 @@ std::vector<double> wanted_masses(const SampleSet& samples, std::span<const Vec3
 /// Seeds more in heavy cells, fewer in light ones, and balance around these and around those that are off.
 class MisfitRepair {
  public:
-  explicit MisfitRepair(Tessellator& state) : state_(state), seeds_(state.result.seeds.positions) {}
+  /// @param thinner  of the same surface, maybe with fewer samples: enough to tell what does not fit
+  MisfitRepair(Tessellator& state, CellEvaluator& thinner)
+      : state_(state), thinner_(thinner), seeds_(state.result.seeds.positions) {}
 
   void run(std::size_t least, std::size_t most) {
     change_misfits();
@@ -68,10 +70,10 @@ class MisfitRepair {
 
  private:
   void change_misfits() {
-    const SampleSet& samples = state_.result.sampling.samples;
+    const SampleSet& samples = thinner_.samples();
     const SizingField& sizing = state_.result.sampling.sizing;
     CellSums sums;
-    state_.evaluator().evaluate(seeds_, sums);
+    thinner_.evaluate(seeds_, sums);
     state_.result.energy_ratio = energy_ratio(sums.energy, seeds_.size(), samples.total_area);
     const std::vector<double> wanted = wanted_masses(samples, seeds_, sizing);
     std::vector<Vec3> kept, added;
@@ -94,6 +96,7 @@ class MisfitRepair {
   }
 
   Tessellator& state_;
+  CellEvaluator& thinner_;
   std::vector<Vec3>& seeds_;
   std::vector<Vec3> places_;
 };
@@ -120,7 +123,9 @@ class Levels {
       Tessellator& finer = next ? *next : finest_;
       seed_from(std::move(mesh), *level, finer);
       const double n = static_cast<double>(counts_[l]);
-      MisfitRepair(finer).run(counts_[l], static_cast<std::size_t>((1 + 2 * count_tolerance) * n));
+      const auto thinner = next || !thinner_ ? nullptr : finest_.evaluator().for_samples(*thinner_, context_);
+      MisfitRepair(finer, thinner ? *thinner : finer.evaluator())
+          .run(counts_[l], static_cast<std::size_t>((1 + 2 * count_tolerance) * n));
       if (next && !connected(*next)) return false;
       level = std::move(next);
     }
@@ -135,14 +140,14 @@ class Levels {
 
   void coarsen_samples() {
     finest_.timer.stage("relax", 0, [&] {
-      std::vector<SampleSet> thinner;
-      thinner.reserve(samples_.size());
+      std::vector<std::unique_ptr<SampleSet>> thinner;
       const SampleSet* from = &finest_.result.sampling.samples;
       for (std::size_t l = 1; l < samples_.size(); ++l) {
         if (static_cast<double>(from->size()) / 4 >= samples_per_seed * static_cast<double>(counts_[l]))
-          from = &thinner.emplace_back(coarsen(*from, context_));
+          from = thinner.emplace_back(std::make_unique<SampleSet>(coarsen(*from, context_))).get();
         samples_[l] = one_sample_per_edge(*from, context_);
       }
+      if (!thinner.empty()) thinner_ = std::move(thinner.front());
     });
   }
 
@@ -194,7 +199,10 @@ class Levels {
   }
   void smooth(Draft& draft, const SampleSet& samples, std::size_t evaluations) const {
     const auto projector = make_projector(samples);
-    const ShapeSmoothingOptions options{.size_weight = env("EM_LMU", smoothing_size_weight), .evaluations = evaluations};
+    const ShapeSmoothingOptions options{.size_weight = env("EM_LMU", smoothing_size_weight),
+                                        .evaluations = evaluations,
+                                        .plane_weight = env("EM_LPW", 10),
+                                        .planes = draft.planes};
     smooth_shapes(draft.mesh, projector.get(), draft.sizing, options, context_, draft.constraints);
   }
 
@@ -207,6 +215,7 @@ class Levels {
       for (std::size_t l = 0; l < coarse.fixed(); ++l)
         if (const std::uint32_t v = draft.vertex_of_label[l]; v != Draft::none) on_curve[v] = 1;
       if (!constraints.curve.empty()) halve_constraints(halved, draft, on_curve);
+      draft.planes.clear();
       draft.mesh = std::move(halved.mesh);
       draft.sizing = draft.sizing.with_mean(0.5 * draft.sizing.mean());
       smooth(draft, finer.result.sampling.samples, middle_evaluations);
@@ -241,8 +250,9 @@ class Levels {
   Tessellator& finest_;
   ExecutionContext& context_;
   MeshOptions options_;
-  std::vector<std::size_t> counts_;  ///< of vertices, by level, the finest first
-  std::vector<SampleSet> samples_;   ///< by level, from 1 on; moved from once a level is made
+  std::vector<std::size_t> counts_;     ///< of vertices, by level, the finest first
+  std::unique_ptr<SampleSet> thinner_;  ///< a quarter of the finest samples; none if that is too few
+  std::vector<SampleSet> samples_;      ///< by level, from 1 on; moved from once a level is made
 };
 
 /// As many as leave enough vertices, and edges short enough for all feature curves, on the coarsest.

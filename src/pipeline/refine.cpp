@@ -54,7 +54,7 @@ class Refinement {
     }
     dbg("extracted");
     flip_to_delaunay(mesh, constraints, context_);
-    smooth_shapes(mesh, projector_.get(), draft_.sizing, {.size_weight = env("EM_MU", 0.2), .evaluations = std::size_t(env("EM_EV", 20))}, context_, constraints);
+    smooth_shapes(mesh, projector_.get(), draft_.sizing, {.size_weight = env("EM_MU", 0.15), .evaluations = std::size_t(env("EM_EV", 20)), .plane_weight = env("EM_PW", 5), .planes = draft_.planes}, context_, constraints);
     flip_to_delaunay(mesh, constraints, context_);
     polish(mesh, projector_.get(), context_, constraints);
     flip_to_delaunay(mesh, constraints, context_);

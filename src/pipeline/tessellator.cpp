@@ -223,6 +223,7 @@ std::vector<std::uint32_t> Tessellator::unconnected() const {
   std::vector<char> connected(result.seeds.size(), 0);
   for (const Triangle& t : result.complex.triangles)
     for (const std::uint32_t l : t) connected[l] = 1;
+  if (std::find(connected.begin(), connected.end(), 0) == connected.end()) return {};
   std::vector<double> area(result.seeds.size(), owns_nothing);
   for (std::size_t i = 0; i < result.labels.size(); ++i) {
     if (result.labels[i] == no_label) continue;

@@ -45,7 +45,7 @@ std::unique_ptr<Tessellator> Tessellator::part_around(std::span<const Vec3> poin
 }
 
 void Tessellator::relax_around(std::span<const Vec3> places, std::size_t evaluations) {
-  constexpr double free_within = 2.5, part_within = 5, seeds_within = 7;  // edges
+  constexpr double free_within = 2.5, part_within = 4.2, seeds_within = 6;  // edges
   if (places.empty()) return;
   timer.stage("relax", 0, [&] {
     const SampleSet& samples = result.sampling.samples;

@@ -34,9 +34,10 @@ void collect_block(const SampleSet& samples, const SampleBlock& block, std::span
   }
 }
 
-CellShape solve(Quadric q, const Vec3& seed) {
+CellShape solve(const Quadric& planes, const Vec3& seed) {
+  Quadric q = planes;
   const double area = q.weight();
-  if (!(area > 0)) return {0, seed, seed};
+  if (!(area > 0)) return {0, seed, seed, {}};
   const Vec3 to_centroid = q.mean();
   q.add_point(to_centroid, tikhonov * area);
   Vec3 move = q.minimum() - to_centroid;
@@ -44,7 +45,7 @@ CellShape solve(Quadric q, const Vec3& seed) {
   if (!std::isfinite(length)) move = {};
   if (length > limit) move *= limit / length;
   const Vec3 centroid = seed + to_centroid;
-  return {area, centroid, centroid + move};
+  return {area, centroid, centroid + move, planes};
 }
 
 /// What all blocks say of each label, in their order. Every thread reads all entries, and adds up those of its labels.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "geometry/quadric.h"
 #include "grid/sample_set.h"
 
 namespace evenmesh {
@@ -14,6 +15,7 @@ struct CellShape {
   double area = 0;
   Vec3 centroid;
   Vec3 vertex;  ///< minimum of the quadric of the samples' tangent planes, held to the centroid
+  Quadric planes;  ///< these, about the seed, by the samples' areas
 };
 
 /// For each of `count` labels. The centroid of a curved patch lies off the surface by about κ·r²/4; the quadric Σ w

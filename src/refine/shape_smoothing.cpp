@@ -95,10 +95,11 @@ class Smoothing {
         facing_(mesh.triangles.size()),
         target_(mesh.triangles.size()),
         energy_of_(mesh.triangles.size()),
-        gradient_of_(mesh.triangles.size()) {}
+        gradient_of_(mesh.triangles.size()),
+        plane_energy_(mesh.vertices.size()) {}
 
   ShapeSmoothingResult run() {
-    renew_frames();
+    make_frames();
     result_.energy_before = mean(energy_);
     std::size_t steps = 0;
     while (result_.evaluations < options_.evaluations) {
@@ -106,10 +107,12 @@ class Smoothing {
       if (!stepped && history_.empty()) break;
       if (!stepped)
         history_.clear();
-      else if (++steps % steps_per_projection == 0)
-        renew_frames();
+      else if (++steps % steps_per_projection == 0) {
+        move_onto_surface();
+        make_frames();
+      }
     }
-    move_onto_surface();
+    if (steps % steps_per_projection != 0) move_onto_surface();
     result_.energy = mean(energy_);
     return result_;
   }
@@ -150,10 +153,9 @@ class Smoothing {
     });
   }
 
-  /// Vertices on the surface, and tangent planes there. Coordinates turn as little as they can, so that what is known
-  /// of the energy still holds.
-  void renew_frames() {
-    move_onto_surface();
+  /// Tangent planes where vertices are now. Coordinates turn as little as they can, so that what is known of the energy
+  /// still holds.
+  void make_frames() {
     each_vertex([&](std::uint32_t v) { frames_[v] = stays(v) ? Frame{} : frame_of(v); });
     find_targets();
     each_vertex([&](std::uint32_t v) {
@@ -223,9 +225,18 @@ class Smoothing {
         const TriangleGradient& g = gradient_of_[t];
         sum += c[0] == v ? g.a : c[1] == v ? g.b : -1.0 * (g.a + g.b);
       }
+      plane_energy_[v] = 0;
+      if (v < options_.planes.size() && edge_[v] > 0) {
+        const CellPlanes& p = options_.planes[v];
+        const double scale =
+            p.quadric.weight() > 0 ? options_.plane_weight / (p.quadric.weight() * edge_[v] * edge_[v]) : 0;
+        plane_energy_[v] = scale * p.quadric.excess(mesh_.vertices[v] - p.origin);
+        sum += 2 * scale * p.quadric.half_gradient(mesh_.vertices[v] - p.origin);
+      }
       gradient[v] = {dot(sum, frames_[v].u), dot(sum, frames_[v].v)};
     });
-    return ordered_sum(context_, energy_of_.size(), [&](std::size_t t) { return energy_of_[t]; });
+    return ordered_sum(context_, energy_of_.size(), [&](std::size_t t) { return energy_of_[t]; }) +
+           ordered_sum(context_, plane_energy_.size(), [&](std::size_t v) { return plane_energy_[v]; });
   }
 
   /// Whether a step downhill was found and taken.
@@ -292,6 +303,7 @@ class Smoothing {
   std::vector<double> target_;  ///< by triangle: twice the area wanted
   std::vector<double> energy_of_;
   std::vector<TriangleGradient> gradient_of_;
+  std::vector<double> plane_energy_;
 };
 
 }  // namespace

@@ -6,15 +6,24 @@
 
 #include "evenmesh/execution_context.h"
 #include "evenmesh/mesh.h"
+#include "geometry/quadric.h"
 #include "grid/sizing_field.h"
 #include "refine/vertex_constraints.h"
 #include "sample/projector.h"
 
 namespace evenmesh {
 
+/// The planes that a vertex' samples lie in.
+struct CellPlanes {
+  Vec3 origin;
+  Quadric quadric;  ///< about the origin, weights are areas
+};
+
 struct ShapeSmoothingOptions {
   double size_weight = 0.2;      ///< μ, at least 0: what equal sizes count against equal angles
   std::size_t evaluations = 20;  ///< of the energy, about
+  double plane_weight = 10;
+  std::span<const CellPlanes> planes{};
   std::span<const char> held{};  ///< by vertex: not 0 where it stays
 };
 
@@ -33,7 +42,7 @@ struct ShapeSmoothingResult {
 /// shape on equal sizes; here the weight is a choice (docs/quality.md).
 ///
 /// Vertices on feature curves slide along them, corners and vertices on the boundary stay. L-BFGS over two tangential
-/// coordinates per vertex; every tenth step, and at the end, vertices are brought onto the surface.
+/// coordinates per vertex; every tenth step, and after the last, vertices are brought onto the surface.
 /// @param projector  null: vertices stay in the tangent planes
 /// Guarantee: no triangle turns by more than 60° between two of these; same bits for any number of threads. Cost: about
 /// 0.1 µs per triangle and evaluation, two projections per vertex and ten evaluations.
