@@ -210,4 +210,16 @@ std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionF
   return left;
 }
 
+std::size_t undo_intersections(Mesh& mesh, const std::vector<Vec3>& before, const IntersectionFinder& find) {
+  constexpr int most_rings = 8;
+  Pairs pairs = find(mesh);
+  for (int rings = 0; rings < most_rings && !pairs.empty(); ++rings) {
+    const std::vector<char> back = region(mesh, pairs, rings);
+    for (std::size_t v = 0; v < back.size(); ++v)
+      if (back[v]) mesh.vertices[v] = before[v];
+    pairs = find(mesh);
+  }
+  return pairs.size();
+}
+
 }  // namespace evenmesh

@@ -22,4 +22,9 @@ using IntersectionFinder = std::function<std::vector<std::pair<std::uint32_t, st
 std::size_t untangle(Mesh& mesh, const Projector* projector, const IntersectionFinder& find, ExecutionContext& context,
                      const VertexConstraints& constraints = {});
 
+/// Vertices around intersections go back to where they were, one ring more of them each round, up to eight.
+/// @param before  positions of the same vertices, in the same triangles
+/// @return the number of pairs that are left
+std::size_t undo_intersections(Mesh& mesh, const std::vector<Vec3>& before, const IntersectionFinder& find);
+
 }  // namespace evenmesh
