@@ -20,7 +20,7 @@ struct MeshingArguments {
   std::vector<std::string> definitions;
   InputArguments input;
   std::string output, format;
-  std::string vertices, edge_length, resolution, bounds, iterations, tolerance;
+  std::string vertices, edge_length, resolution, bounds, iterations, tolerance, evenness;
   std::string seed = "1";
   std::string quality = "normal";
   std::string optimizer = "lbfgs";

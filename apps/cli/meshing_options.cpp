@@ -50,6 +50,8 @@ void add_effort(CLI::App& app, MeshingArguments& a) {
   };
   option("--quality", a.quality, "EFFORT",
          joined_names<Quality>("|") + " (high anneals: more regular, several times slower);\ndefault normal");
+  option("--evenness", a.evenness, "E",
+         "where triangles cannot have both: equal angles (0) or equal sizes (1);\ndefault 0.5");
   option("--method", a.method, "METHOD",
          "sampling: " + joined_names<Method>("|") +
              "; auto takes the shell for points and for\nopen or broken sheets; default auto");

@@ -67,6 +67,11 @@ MeshOptions mesh_options(const MeshingArguments& a) {
           fmt::format("--tolerance takes a number above 0 and below 1; {} is out of range", a.tolerance));
     }
   }
+  if (!a.evenness.empty()) {
+    options.evenness = real_number("--evenness", a.evenness);
+    if (!(options.evenness >= 0 && options.evenness <= 1))
+      throw InvalidInput(fmt::format("--evenness takes a number from 0 to 1; {} is out of range", a.evenness));
+  }
   if (a.density != "uniform") options.density = density_from_expression(a.density, parameters_of(a.input));
   options.seed = whole_number("--seed", a.seed, 0);
   return options;

@@ -32,7 +32,7 @@ inline constexpr Range<std::size_t> iterations{0, 10'000};
 /// | key | value |
 /// |---|---|
 /// | `vertices`, `resolution`, `thickness`, `max_cycle`, `iterations`, `seed` | whole number |
-/// | `edge_length` (model units), `tolerance` | number |
+/// | `edge_length` (model units), `evenness`, `tolerance` | number |
 /// | `method`, `quality`, `optimizer`, `start`, `connect`, `topology`, `placement` | name |
 /// | `wrap`, `fill_cavities` | true or false |
 /// | `features` | angle in degrees, or "off" |

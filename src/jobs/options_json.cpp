@@ -213,6 +213,7 @@ const std::vector<Option>& all_options() {
       yes_or_no("wrap", &O::wrap),
       bounds(),
       choice("quality", &O::quality),
+      number("evenness", &O::evenness),
       choice("optimizer", &O::optimizer),
       choice("start", &O::start),
       choice("connect", &O::connect),

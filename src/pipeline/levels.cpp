@@ -199,10 +199,8 @@ class Levels {
   }
   void smooth(Draft& draft, const SampleSet& samples, std::size_t evaluations) const {
     const auto projector = make_projector(samples);
-    const ShapeSmoothingOptions options{.size_weight = env("EM_LMU", smoothing_size_weight),
-                                        .evaluations = evaluations,
-                                        .plane_weight = env("EM_LPW", 10),
-                                        .planes = draft.planes};
+    const ShapeSmoothingOptions options{
+        .size_weight = smoothing_size_weight, .evaluations = evaluations, .planes = draft.planes};
     smooth_shapes(draft.mesh, projector.get(), draft.sizing, options, context_, draft.constraints);
   }
 

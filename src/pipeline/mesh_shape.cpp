@@ -32,6 +32,7 @@ void check(const MeshOptions& o) {
   if (o.feature_angle && !(*o.feature_angle > 0 && *o.feature_angle < 180))
     throw InvalidInput("the angle of sharp edges must lie in (0, 180) degrees");
   if (!(o.tolerance > 0 && o.tolerance < 1)) throw InvalidInput("the tolerance must lie in (0, 1)");
+  if (!(o.evenness >= 0 && o.evenness <= 1)) throw InvalidInput("the evenness must lie in [0, 1]");
   if (o.bounds && !(is_finite(o.bounds->lo) && is_finite(o.bounds->hi)) && !o.bounds->empty())
     throw InvalidInput("the bounds are not finite: give six numbers");
   if (o.bounds && o.bounds->empty())

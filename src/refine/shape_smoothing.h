@@ -20,11 +20,10 @@ struct CellPlanes {
 };
 
 struct ShapeSmoothingOptions {
-  double size_weight = 0.2;      ///< μ, at least 0: what equal sizes count against equal angles
-  std::size_t evaluations = 20;  ///< of the energy, about
-  double plane_weight = 10;
-  std::span<const CellPlanes> planes{};
-  std::span<const char> held{};  ///< by vertex: not 0 where it stays
+  double size_weight = 0.1;              ///< μ, at least 0: what equal sizes count against equal angles
+  std::size_t evaluations = 20;          ///< of the energy, about
+  std::span<const CellPlanes> planes{};  ///< by vertex; none: nothing holds vertices to ridges and tips
+  std::span<const char> held{};          ///< by vertex: not 0 where it stays
 };
 
 struct ShapeSmoothingResult {
@@ -32,14 +31,19 @@ struct ShapeSmoothingResult {
   std::size_t evaluations = 0;
 };
 
+/// μ for an evenness in [0, 1]: from 0.02 over 0.1 to 0.5.
+double size_weight_of(double evenness);
+
 /// Moves vertices along the surface to a (local) minimum of
 ///
-///   Σ [(l₁² + l₂² + l₃²) / (4√3·A) − 1] + μ/2 · ln²(A / A₀)
+///   Σ [(l₁² + l₂² + l₃²) / (4√3·A) − 1] + μ/2 · ln²(A / A₀)  +  λ · Σ (mean squared distance from the planes) / edge²
 ///
-/// over the triangles: the first term, the conformal energy of the map from an equilateral triangle, is 0 for those
-/// alone and does not know size; A₀ is the mean area, or what the sizing field wants there. Centroidal Voronoi
-/// tessellation pays for a size that is off with four times what a shape that is off by as much costs it, and so spends
-/// shape on equal sizes; here the weight is a choice (docs/quality.md).
+/// over the triangles, and over the vertices and the tangent planes of their cells. The first term, the conformal
+/// energy of the map from an equilateral triangle, is 0 for those alone and does not know size; A₀ is the mean area, or
+/// what the sizing field wants there. Centroidal Voronoi tessellation pays for a size that is off with four times what
+/// a shape that is off by as much costs it, and so spends shape on equal sizes; here the weight is a choice
+/// (docs/quality.md). The last sum is flat where the surface is; it keeps vertices on ridges and tips that edges of
+/// this length can hardly follow.
 ///
 /// Vertices on feature curves slide along them, corners and vertices on the boundary stay. L-BFGS over two tangential
 /// coordinates per vertex; every tenth step, and after the last, vertices are brought onto the surface.

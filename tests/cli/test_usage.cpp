@@ -31,13 +31,13 @@ TEST_F(Usage, HelpListsEveryCommand) {
 TEST_F(Usage, HelpOfMeshDescribesEveryOptionOnce) {
   const std::string help = run({"mesh", "--help"}).out;
   for (const char* option :
-       {"--output",      "--vertices",   "--edge-length", "--error",     "--method",     "--resolution",
-        "--thickness",   "--bounds",     "--quality",     "--optimizer", "--iterations", "--tolerance",
-        "--start",       "--seed",       "--connect",     "--topology",  "--features",   "--density",
-        "--threads",     "--backend",    "--report",      "--json",      "--quiet",      "--verbose",
-        "--progress",    "--expression", "--define",      "--entry",     "--raster",     "--raster-vertices",
-        "--dump-dexels", "--dump-shell", "--outliers",    "--placement", "--max-cycle",  "--format",
-        "--unit"}) {
+       {"--output",          "--vertices",    "--edge-length", "--error",    "--method",    "--resolution",
+        "--thickness",       "--bounds",      "--quality",     "--evenness", "--optimizer", "--iterations",
+        "--tolerance",       "--start",       "--seed",        "--connect",  "--topology",  "--features",
+        "--density",         "--threads",     "--backend",     "--report",   "--json",      "--quiet",
+        "--verbose",         "--progress",    "--expression",  "--define",   "--entry",     "--raster",
+        "--raster-vertices", "--dump-dexels", "--dump-shell",  "--outliers", "--placement", "--max-cycle",
+        "--format",          "--unit"}) {
     const std::size_t first = help.find(std::string(option) + " ");
     ASSERT_TRUE(first != std::string::npos || help.find(std::string(option) + "\n") != std::string::npos) << option;
   }
@@ -94,6 +94,7 @@ TEST_F(Usage, WrongUsageIsStatus2) {
       {{"mesh", in, "-o", "x.ply", "-r", "7"}, "between 8 and 8192"},
       {{"mesh", in, "-o", "x.ply", "-j", "2000"}, "-j"},
       {{"mesh", in, "-o", "x.ply", "--tolerance", "1"}, "--tolerance"},
+      {{"mesh", in, "-o", "x.ply", "--evenness", "1.5"}, "--evenness"},
       {{"mesh", in, "-o", "x.ply", "--iterations", "10001"}, "--iterations"},
       {{"mesh", in, "-o", "x.ply", "--quality", "best"}, "fast, normal, high"},
       {{"mesh", in, "-o", "x.ply", "--method", "shells"}, "auto, raster, shell"},

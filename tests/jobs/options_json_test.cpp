@@ -15,11 +15,11 @@ namespace {
 /// All members; no longer compiles when there is one more, which then belongs into the JSON, too.
 auto members(const MeshOptions& options) {
   const auto& [vertices, edge_length, resolution, method, thickness, feature_angle, fill_cavities, wrap, density,
-               bounds, quality, optimizer, start, connect, max_cycle, topology, placement, iterations, tolerance,
-               seed] = options;
+               bounds, quality, evenness, optimizer, start, connect, max_cycle, topology, placement, iterations,
+               tolerance, seed] = options;
   return std::make_tuple(vertices, edge_length, resolution, method, thickness, feature_angle, fill_cavities, wrap,
-                         expression_of(density), bounds, quality, optimizer, start, connect, max_cycle, topology,
-                         placement, iterations, tolerance, seed);
+                         expression_of(density), bounds, quality, evenness, optimizer, start, connect, max_cycle,
+                         topology, placement, iterations, tolerance, seed);
 }
 
 /// Every member differs from its default, and numbers use all their bits.
@@ -35,6 +35,7 @@ MeshOptions unusual() {
           .density = density_from_expression("1 + a exp(-b x^2)", {{"a", 4.1}, {"b", 1e-300}}),
           .bounds = Box{{-1e300, -0.1, 2.0 / 3}, {1e-300, 1, 5}},
           .quality = Quality::high,
+          .evenness = 0.1 + 0.6,
           .optimizer = Optimizer::lloyd,
           .start = Start::random,
           .connect = Connect::fragments,

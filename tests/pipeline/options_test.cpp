@@ -29,6 +29,9 @@ TEST(MeshOptions, OutOfRangeIsRefused) {
       {.vertices = 100, .tolerance = 0},
       {.vertices = 100, .tolerance = 1},
       {.vertices = 100, .tolerance = nan},
+      {.vertices = 100, .evenness = -0.1},
+      {.vertices = 100, .evenness = 1.1},
+      {.vertices = 100, .evenness = nan},
   };
   for (std::size_t i = 0; i < std::size(wrong); ++i) EXPECT_THROW(meshed(ball, wrong[i]), InvalidInput) << "case " << i;
 }
