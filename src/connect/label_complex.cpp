@@ -3,6 +3,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -79,25 +80,31 @@ class Complex {
     const Index own_end = own_block < 0 ? 0 : samples_.blocks[own_block].end;
     for (Index s = own_begin; s < own_end; ++s)
       if (labels_[s] != no_label) tally.twice_euler[labels_[s]] += 2;
-    // Every link is met twice, from the cubes on both sides of the face, and counts −1 each time.
-    tally.walker.walk(bricks_[b], [&](const Index* loop, int n) {
+    // Every link is met twice, from the cubes on both sides of the face: it counts −1 each time, and is joined once.
+    const auto joiner = sets_.joiner(b);
+    tally.walker.walk_links(bricks_[b], [&](const Index* loop, int n, unsigned links) {
       ++tally.loops;
+      const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
       const Index label = labels_[loop[0]];
       bool uniform = true;
       for (int i = 1; i < n; ++i) uniform &= labels_[loop[i]] == label;
       if (uniform) {
         if (label == no_label) return;
         tally.twice_euler[label] += 2 - n;
-        for (int i = 1; i < n; ++i) sets_.join(b, loop[i - 1], loop[i]);
-        return;
+      } else {
+        for (int i = 0; i < n; ++i) {
+          const Index s = labels_[loop[i]], t = labels_[loop[after(i)]];
+          if (s == t && s != no_label)
+            --tally.twice_euler[s];
+          else
+            links &= ~(1u << i);
+        }
+        add_polygon(b, loop, n);
       }
-      for (int i = 0; i < n; ++i) {
-        const Index s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
-        if (labels_[s] != labels_[t] || labels_[s] == no_label) continue;
-        --tally.twice_euler[labels_[s]];
-        sets_.join(b, s, t);
+      for (; links != 0; links &= links - 1) {
+        const int i = std::countr_zero(links);
+        joiner.join(loop[i], loop[after(i)]);
       }
-      add_polygon(b, loop, n);
     });
   }
 
