@@ -87,7 +87,7 @@ class Complex {
       const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
       const Index label = labels_[loop[0]];
       bool uniform = true;
-      for (int i = 1; i < n; ++i) uniform &= labels_[loop[i]] == label;
+      for (int i = 1; i < n && uniform; ++i) uniform = labels_[loop[i]] == label;
       if (uniform) {
         if (label == no_label) return;
         tally.twice_euler[label] += 2 - n;
@@ -321,7 +321,7 @@ LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>
   std::vector<Vec3> positions = seeds.positions;
   for (const CellComponent& piece : result.pieces) positions.push_back(piece.centroid);
   const bool open = std::find(labels.begin(), labels.end(), no_label) != labels.end();
-  const DualMesh dual = triangulate_polygons(complex.polygons(), labels, positions, open);
+  const DualMesh dual = triangulate_polygons(complex.polygons(), labels, positions, open, context);
   result.triangles = dual.triangles;
   result.defects = dual.defects;
   for (std::size_t l = 0; l < seeds.size(); ++l)

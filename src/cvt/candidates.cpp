@@ -150,16 +150,40 @@ class ChunkSeeds {
 
 }  // namespace
 
+namespace {
+
+struct Range {
+  float lo, hi;
+};
+
+/// Of count > 0 values. Four at a time, which keeps vector units busy.
+Range range_of(const float* value, std::size_t count) {
+  float lo[4], hi[4];
+  std::fill_n(lo, 4, value[0]);
+  std::fill_n(hi, 4, value[0]);
+  const auto add = [&](std::size_t lane, float v) {
+    lo[lane] = v < lo[lane] ? v : lo[lane];
+    hi[lane] = hi[lane] < v ? v : hi[lane];
+  };
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4)
+    for (std::size_t lane = 0; lane < 4; ++lane) add(lane, value[i + lane]);
+  for (; i < count; ++i) add(0, value[i]);
+  return {std::min({lo[0], lo[1], lo[2], lo[3]}), std::max({hi[0], hi[1], hi[2], hi[3]})};
+}
+
+}  // namespace
+
 std::vector<BlockBox> block_boxes(const SampleSet& samples, const ExecutionContext& context) {
   std::vector<BlockBox> boxes(samples.blocks.size());
   parallel_for(context, boxes.size(), 256, [&](std::size_t begin, std::size_t end) {
     const std::vector<float>* coordinate[3] = {&samples.x, &samples.y, &samples.z};
     for (std::size_t b = begin; b < end; ++b)
       for (int a = 0; a < 3; ++a) {
-        const auto first = coordinate[a]->begin();
-        const auto [lo, hi] = std::minmax_element(first + samples.blocks[b].begin, first + samples.blocks[b].end);
-        boxes[b].center[a] = 0.5f * (*lo + *hi);
-        boxes[b].half[a] = 0.5f * (*hi - *lo) * (1 + 1e-6f);
+        const SampleBlock& block = samples.blocks[b];
+        const auto [lo, hi] = range_of(coordinate[a]->data() + block.begin, block.end - block.begin);
+        boxes[b].center[a] = 0.5f * (lo + hi);
+        boxes[b].half[a] = 0.5f * (hi - lo) * (1 + 1e-6f);
       }
   });
   return boxes;

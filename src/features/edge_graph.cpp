@@ -80,10 +80,15 @@ class Finder {
 
   void visit(const CubeBrick& brick, const std::uint32_t* loop, int n, BrickNodes& found) const {
     ++found.loops;
-    NormalRange all;
-    for (int i = 0; i < n; ++i) all.add(samples_.normal[loop[i]]);
-    if (are_nearly_same(all)) return;
     const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
+    bool smooth = true;
+    for (int i = 0; i < n && smooth; ++i) {
+      NormalRange two;
+      two.add(samples_.normal[loop[i]]);
+      two.add(samples_.normal[loop[after(i)]]);
+      smooth = are_nearly_same(two);
+    }
+    if (smooth) return;
     std::array<Vec3, 12> normal;
     for (int i = 0; i < n; ++i) normal[i] = unpack_normal(samples_.normal[loop[i]]);
     bool creased = false;
