@@ -11,7 +11,7 @@
 namespace evenmesh {
 namespace {
 
-constexpr std::int64_t none = -1, left_out = -2;
+constexpr std::int32_t none = -1, left_out = -2;
 
 /// 4 × 4 × 4 bricks, whose Morton codes differ in the lowest six bits: their blocks follow each other.
 struct Tile {
@@ -21,9 +21,9 @@ struct Tile {
   std::uint64_t there = 0, left = 0;  ///< by the lowest bits: whether there is a block, whether it was left out
   std::uint32_t first = 0;            ///< its first block
 
-  std::int64_t block(unsigned brick) const {
+  std::int32_t block(unsigned brick) const {
     const std::uint64_t bit = std::uint64_t{1} << brick;
-    if (there & bit) return first + std::popcount(there & (bit - 1));
+    if (there & bit) return static_cast<std::int32_t>(first) + std::popcount(there & (bit - 1));
     return left & bit ? left_out : none;
   }
 };
@@ -67,7 +67,7 @@ class Neighbourhood {
     }
   }
   /// @param x, y, z  brick from the tile's first, −1 … 4
-  std::int64_t block(int x, int y, int z) const {
+  std::int32_t block(int x, int y, int z) const {
     const auto tile = [](int v) { return (v + Tile::side) / Tile::side; };
     const auto spread = [](int v) { return static_cast<unsigned>((v & 1) | (v & 2) << 2); };
     const Tile* found = tile_[tile(x) + 3 * tile(y) + 9 * tile(z)];
@@ -79,10 +79,10 @@ class Neighbourhood {
 };
 
 /// The bricks around block b that come with it: its own, and those without samples whose first block it is.
-void bricks_of_block(const SampleSet& samples, const Neighbourhood& near, std::int64_t b,
+void bricks_of_block(const SampleSet& samples, const Neighbourhood& near, std::int32_t b,
                      std::vector<CubeBrick>& bricks) {
   const auto& at = samples.blocks[static_cast<std::size_t>(b)].brick;
-  std::array<std::int64_t, 27> around;  // [x + 3·y + 9·z], the block itself in the middle
+  std::array<std::int32_t, 27> around;  // [x + 3·y + 9·z], the block itself in the middle
   constexpr int inside_tile = Tile::side - 1;
   for (int i = 0; i < 27; ++i)
     around[i] = near.block((at[0] & inside_tile) - 1 + i % 3, (at[1] & inside_tile) - 1 + i / 3 % 3,
@@ -112,12 +112,16 @@ std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const ExecutionCont
     for (std::size_t t = p * piece; t < std::min(tiles.size(), (p + 1) * piece); ++t) {
       const Neighbourhood near(tiles, tiles[t]);
       const int count = std::popcount(tiles[t].there);
-      for (int b = 0; b < count; ++b) bricks_of_block(samples, near, tiles[t].first + b, of_piece[p]);
+      for (int b = 0; b < count; ++b)
+        bricks_of_block(samples, near, static_cast<std::int32_t>(tiles[t].first) + b, of_piece[p]);
     }
   });
-  std::vector<CubeBrick> bricks;
-  bricks.reserve(samples.blocks.size() * 5 / 4);
-  for (const auto& list : of_piece) bricks.insert(bricks.end(), list.begin(), list.end());
+  std::vector<std::size_t> start(of_piece.size() + 1, 0);
+  for (std::size_t p = 0; p < of_piece.size(); ++p) start[p + 1] = start[p] + of_piece[p].size();
+  std::vector<CubeBrick> bricks(start.back());
+  parallel_tasks(context, of_piece.size(), [&](std::size_t p) {
+    std::copy(of_piece[p].begin(), of_piece[p].end(), bricks.begin() + static_cast<std::ptrdiff_t>(start[p]));
+  });
   return bricks;
 }
 
@@ -135,15 +139,16 @@ const CubeWalker::Places& CubeWalker::places_of_loops() {
   return table;
 }
 
-bool CubeWalker::load(const CubeBrick& brick) {
-  for (auto* rows : {&crossed_, &lower_inside_})
-    for (auto& of_axis : *rows) of_axis.fill({});
-  loaded_ = false;
-  for (int d = 0; d < 7; ++d)  // of the seventh no edge is shared
+void CubeWalker::load(const CubeBrick& brick) {
+  for (; layers_ != 0; layers_ &= layers_ - 1)
+    for (int axis = 0; axis < 3; ++axis) {
+      crossed_[axis][std::countr_zero(layers_)].fill(0);
+      lower_inside_[axis][std::countr_zero(layers_)].fill(0);
+    }
+  for (int d = 0; d < 7; ++d)  // of the last no edge is shared
     if (brick.block[d] >= 0) load_block(samples_.blocks[static_cast<std::size_t>(brick.block[d])], d);
-  if (!loaded_) return false;
-  find_inside_points();
-  return true;
+  first_ = last_ = 0;
+  if (layers_ != 0) find_inside_points();
 }
 
 /// The block's edges that belong to the brick, which is the block's own or its neighbour at dx + 2·dy + 4·dz towards
@@ -156,39 +161,47 @@ void CubeWalker::load_block(const SampleBlock& block, int d) {
     const std::uint32_t end = block.end_of_axis(axis);
     for (std::uint32_t s = block.begin_of_axis(axis); s < end; ++s) {
       const EdgeCode code = samples_.edge[s];
-      if (code.bits & in_layer) continue;
+      if (code.bits & in_layer) {
+        if (step[0] != 0 && code.i() != 0) break;  // those that follow neither
+        continue;
+      }
       const int i = int(code.i()) + step[0], j = int(code.j()) + step[1], k = int(code.k()) + step[2];
+      const unsigned inside = code.lower_end_inside() ? 1 : 0;
       sample_[at(axis, i, j, k)] = s;
       crossed_[axis][k][j] |= static_cast<Bits>(1u << i);
-      lower_inside_[axis][k][j] |= static_cast<Bits>((code.lower_end_inside() ? 1u : 0u) << i);
-      if (!loaded_) {
-        loaded_ = true;
-        some_ = {i, j, k, code.lower_end_inside()};
-      }
+      lower_inside_[axis][k][j] |= static_cast<Bits>(inside << i);
+      if (layers_ == 0) some_ = {i, j, k, inside != 0};
+      layers_ |= 1u << k;
     }
   }
 }
 
-/// Signs of all points of the brick's cubes: those of neighbours differ where the edge between them is crossed.
+/// Signs of the points of the brick's cubes: those of neighbours differ where the edge between them is crossed.
 void CubeWalker::find_inside_points() {
   constexpr unsigned all = (1u << side) - 1;
+  first_ = std::max(std::countr_zero(layers_) - 1, 0);
+  last_ = std::min(static_cast<int>(std::bit_width(layers_)), side - 1);
   auto& inside = inside_;
-  unsigned row = crossed_[0][0][0];
+  unsigned row = crossed_[0][first_][0];
   row ^= row << 1;
   row ^= row << 2;
   row ^= row << 4;
-  inside[0].fill(0);
-  inside[0][0] = static_cast<Bits>(row << 1 & all);
-  for (int j = 0; j + 1 < side; ++j) inside[0][j + 1] = inside[0][j] ^ crossed_[1][0][j];
-  for (int k = 0; k + 1 < side; ++k)
+  inside[first_].fill(0);
+  inside[first_][0] = static_cast<Bits>(row << 1 & all);
+  for (int j = 0; j + 1 < side; ++j) inside[first_][j + 1] = inside[first_][j] ^ crossed_[1][first_][j];
+  for (int k = first_; k < last_; ++k)
     for (int j = 0; j < pitch; ++j) inside[k + 1][j] = inside[k][j] ^ crossed_[2][k][j];
   if ((inside[some_.k][some_.j] >> some_.i & 1u) != (some_.inside ? 1u : 0u))
-    for (auto& rows : inside)
-      for (int j = 0; j < side; ++j) rows[j] ^= all;
+    for (int k = first_; k <= last_; ++k)
+      for (int j = 0; j < side; ++j) inside[k][j] ^= all;
+  check_signs();
+}
 
+/// Against all crossed edges.
+void CubeWalker::check_signs() {
   Bits wrong = 0, other_sign = 0;
-  for (int k = 0; k < side; ++k) {
-    const auto &here = inside[k], &x = crossed_[0][k], &y = crossed_[1][k], &z = crossed_[2][k];
+  for (int k = first_; k <= last_; ++k) {
+    const auto &here = inside_[k], &x = crossed_[0][k], &y = crossed_[1][k], &z = crossed_[2][k];
     const auto &lower_x = lower_inside_[0][k], &lower_y = lower_inside_[1][k], &lower_z = lower_inside_[2][k];
     for (int j = 0; j < pitch; ++j) {
       const Bits step = static_cast<Bits>(here[j] >> 1), changes = static_cast<Bits>((here[j] ^ step) & 0xff);

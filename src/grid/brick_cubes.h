@@ -14,7 +14,7 @@ namespace evenmesh {
 
 /// A brick of grid cubes and the blocks that hold crossings on its cubes' edges: [dx + 2·dy + 4·dz], −1 = none.
 struct CubeBrick {
-  std::array<std::int64_t, 8> block{};
+  std::array<std::int32_t, 8> block{};
   std::array<int, 3> at{};  ///< brick coordinates
 };
 
@@ -60,8 +60,8 @@ class CubeWalker {
   /// Calls visit(corners, i, j, k) for every crossed cube: bit c of `corners` is set where corner c is inside.
   template <typename Visit>
   void walk_cubes(const CubeBrick& brick, const Visit& visit) {
-    if (!load(brick)) return;
-    for (int k = 0; k < 8; ++k)
+    load(brick);
+    for (int k = first_; k < last_; ++k)
       for (std::uint64_t cubes = crossed_cubes(k); cubes != 0; cubes &= cubes - 1) {
         const int at = std::countr_zero(cubes), i = at & 7, j = at >> 3;
         const auto corners_of = [&](int y, int z) { return inside_[z][y] >> i & 3u; };
@@ -96,10 +96,10 @@ class CubeWalker {
       first = cube.start[l];
     }
   }
-  /// False: nothing is crossed.
-  bool load(const CubeBrick& brick);
+  void load(const CubeBrick& brick);
   void load_block(const SampleBlock& block, int d);
   void find_inside_points();
+  void check_signs();
   /// Bit 8·j + i: cube i, j, k is crossed.
   std::uint64_t crossed_cubes(int k) const;
   unsigned own_sign(unsigned corners, int i, int j, int k) const;
@@ -113,8 +113,10 @@ class CubeWalker {
   struct {
     int i, j, k;
     bool inside;
-  } some_{};  ///< lower end of a crossed edge
-  bool loaded_ = false, signs_agree_ = true;
+  } some_{};                  ///< lower end of a crossed edge
+  unsigned layers_ = 0;       ///< bit k: of some crossed edge the lower end lies there
+  int first_ = 0, last_ = 0;  ///< layers of points that are looked at: there is nothing below and above
+  bool signs_agree_ = true;
 };
 
 }  // namespace evenmesh
