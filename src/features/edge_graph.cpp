@@ -75,20 +75,13 @@ class Finder {
     NormalRange all;
     for (const std::int64_t b : brick.block)
       if (b >= 0) all.add(ranges_[static_cast<std::size_t>(b)]);
-    return are_nearly_same(all);
+    return all.width() < safe_step_;
   }
 
   void visit(const CubeBrick& brick, const std::uint32_t* loop, int n, BrickNodes& found) const {
     ++found.loops;
+    if (is_smooth(loop, n)) return;
     const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
-    bool smooth = true;
-    for (int i = 0; i < n && smooth; ++i) {
-      NormalRange two;
-      two.add(samples_.normal[loop[i]]);
-      two.add(samples_.normal[loop[after(i)]]);
-      smooth = are_nearly_same(two);
-    }
-    if (smooth) return;
     std::array<Vec3, 12> normal;
     for (int i = 0; i < n; ++i) normal[i] = unpack_normal(samples_.normal[loop[i]]);
     bool creased = false;
@@ -109,9 +102,20 @@ class Finder {
     return cosine < clear_ ? Sharpness::clear : cosine < sharp_ ? Sharpness::sharp : Sharpness::weak;
   }
 
-  /// Whether all angles are surely below the limit: in the octahedral map a step of length d is an angle of 3·d at
-  /// most.
-  bool are_nearly_same(const NormalRange& range) const { return range.width() < safe_step_; }
+  bool is_smooth(const std::uint32_t* loop, int n) const {
+    PackedNormal before = samples_.normal[loop[n - 1]];
+    for (int i = 0; i < n; ++i) {
+      const PackedNormal normal = samples_.normal[loop[i]];
+      if (!are_nearly_same(before, normal)) return false;
+      before = normal;
+    }
+    return true;
+  }
+  /// Whether the angle is surely below the limit: in the octahedral map a step of length d is an angle of 3·d at most.
+  bool are_nearly_same(PackedNormal a, PackedNormal b) const {
+    const int u = int(a.bits & 0xffff) - int(b.bits & 0xffff), v = int(a.bits >> 16) - int(b.bits >> 16);
+    return std::abs(u) < safe_step_ && std::abs(v) < safe_step_;
+  }
 
   FeatureNode make_node(const CubeBrick& brick, const std::uint32_t* loop, const Vec3* normal, int n) const {
     FeatureNode node;
