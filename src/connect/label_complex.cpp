@@ -51,7 +51,7 @@ class Complex {
       for (std::size_t b = begin; b < end; ++b) {
         if (!brick_dirty[b]) continue;
         polygons_[b].clear();
-        walkers.local().walk(bricks_[b], [&](const Index* loop, int n) { add_polygon(b, loop, n); });
+        walkers.local().walk(bricks_[b], [&](const Index* loop, int n) { add_polygon(loop, n, polygons_[b]); });
       }
     });
   }
@@ -73,6 +73,8 @@ class Complex {
     CubeWalker walker;
     std::vector<std::int32_t> twice_euler;
     std::int64_t loops = 0;
+    BrickUnion::Pairs across;     ///< scratch
+    std::vector<Index> polygons;  ///< scratch: of one brick
     Tally(const SampleSet& samples, std::size_t labels) : walker(samples), twice_euler(labels, 0) {}
   };
 
@@ -83,7 +85,8 @@ class Complex {
     for (Index s = own_begin; s < own_end; ++s)
       if (labels_[s] != no_label) tally.twice_euler[labels_[s]] += 2;
     // Every link is met twice, from the cubes on both sides of the face: it counts −1 each time, and is joined once.
-    const auto joiner = sets_.joiner(b);
+    const auto joiner = sets_.joiner(b, tally.across);
+    tally.polygons.clear();
     tally.walker.walk_links(bricks_[b], [&](const Index* loop, int n, unsigned links) {
       ++tally.loops;
       const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
@@ -101,17 +104,18 @@ class Complex {
           else
             links &= ~(1u << i);
         }
-        add_polygon(b, loop, n);
+        add_polygon(loop, n, tally.polygons);
       }
       for (; links != 0; links &= links - 1) {
         const int i = std::countr_zero(links);
         joiner.join(loop[i], loop[after(i)]);
       }
     });
+    if (!tally.polygons.empty()) polygons_[b] = tally.polygons;  // no larger than it must be
   }
 
   /// Stores the loop as (count, samples): one sample for each run of equal labels, when there are three runs or more.
-  void add_polygon(std::size_t b, const Index* loop, int n) {
+  void add_polygon(const Index* loop, int n, std::vector<Index>& polygons) const {
     Index context[12];
     Index runs = 0;
     for (int i = 0; i < n; ++i) {
@@ -119,7 +123,6 @@ class Complex {
       if (labels_[loop[i]] != labels_[loop[i == 0 ? n - 1 : i - 1]]) context[runs++] = loop[i];
     }
     if (runs < 3) return;
-    auto& polygons = polygons_[b];
     polygons.push_back(runs);
     polygons.insert(polygons.end(), context, context + runs);
   }
