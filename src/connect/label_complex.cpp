@@ -3,6 +3,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -50,7 +51,7 @@ class Complex {
       for (std::size_t b = begin; b < end; ++b) {
         if (!brick_dirty[b]) continue;
         polygons_[b].clear();
-        walkers.local().walk(bricks_[b], [&](const Index* loop, int n) { add_polygon(b, loop, n); });
+        walkers.local().walk(bricks_[b], [&](const Index* loop, int n) { add_polygon(loop, n, polygons_[b]); });
       }
     });
   }
@@ -60,6 +61,8 @@ class Complex {
   const std::vector<Index>& roots() const { return roots_; }
   const std::vector<CubeBrick>& bricks() const { return bricks_; }
   const std::vector<std::vector<Index>>& polygons() const { return polygons_; }
+  /// Whether some samples have no label.
+  bool open() const { return open_; }
   /// Twice the Euler number (with compact support) of the interior of a label's quads; 2 per disk.
   const std::vector<std::int64_t>& twice_euler() const { return euler_; }
   /// χ of the quad surface: corners − links + quads, and there are two links for every quad.
@@ -70,6 +73,8 @@ class Complex {
     CubeWalker walker;
     std::vector<std::int32_t> twice_euler;
     std::int64_t loops = 0;
+    BrickUnion::Pairs across;     ///< scratch
+    std::vector<Index> polygons;  ///< scratch: of one brick
     Tally(const SampleSet& samples, std::size_t labels) : walker(samples), twice_euler(labels, 0) {}
   };
 
@@ -79,30 +84,38 @@ class Complex {
     const Index own_end = own_block < 0 ? 0 : samples_.blocks[own_block].end;
     for (Index s = own_begin; s < own_end; ++s)
       if (labels_[s] != no_label) tally.twice_euler[labels_[s]] += 2;
-    // Every link is met twice, from the cubes on both sides of the face, and counts −1 each time.
-    tally.walker.walk(bricks_[b], [&](const Index* loop, int n) {
+    // Every link is met twice, from the cubes on both sides of the face: it counts −1 each time, and is joined once.
+    const auto joiner = sets_.joiner(b, tally.across);
+    tally.polygons.clear();
+    tally.walker.walk_links(bricks_[b], [&](const Index* loop, int n, unsigned links) {
       ++tally.loops;
+      const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
       const Index label = labels_[loop[0]];
       bool uniform = true;
-      for (int i = 1; i < n; ++i) uniform &= labels_[loop[i]] == label;
+      for (int i = 1; i < n && uniform; ++i) uniform = labels_[loop[i]] == label;
       if (uniform) {
         if (label == no_label) return;
         tally.twice_euler[label] += 2 - n;
-        for (int i = 1; i < n; ++i) sets_.join(b, loop[i - 1], loop[i]);
-        return;
+      } else {
+        for (int i = 0; i < n; ++i) {
+          const Index s = labels_[loop[i]], t = labels_[loop[after(i)]];
+          if (s == t && s != no_label)
+            --tally.twice_euler[s];
+          else
+            links &= ~(1u << i);
+        }
+        add_polygon(loop, n, tally.polygons);
       }
-      for (int i = 0; i < n; ++i) {
-        const Index s = loop[i], t = loop[i + 1 == n ? 0 : i + 1];
-        if (labels_[s] != labels_[t] || labels_[s] == no_label) continue;
-        --tally.twice_euler[labels_[s]];
-        sets_.join(b, s, t);
+      for (; links != 0; links &= links - 1) {
+        const int i = std::countr_zero(links);
+        joiner.join(loop[i], loop[after(i)]);
       }
-      add_polygon(b, loop, n);
     });
+    if (!tally.polygons.empty()) polygons_[b] = tally.polygons;  // no larger than it must be
   }
 
   /// Stores the loop as (count, samples): one sample for each run of equal labels, when there are three runs or more.
-  void add_polygon(std::size_t b, const Index* loop, int n) {
+  void add_polygon(const Index* loop, int n, std::vector<Index>& polygons) const {
     Index context[12];
     Index runs = 0;
     for (int i = 0; i < n; ++i) {
@@ -110,7 +123,6 @@ class Complex {
       if (labels_[loop[i]] != labels_[loop[i == 0 ? n - 1 : i - 1]]) context[runs++] = loop[i];
     }
     if (runs < 3) return;
-    auto& polygons = polygons_[b];
     polygons.push_back(runs);
     polygons.insert(polygons.end(), context, context + runs);
   }
@@ -118,12 +130,16 @@ class Complex {
   void collect_roots() {
     constexpr std::size_t piece = 1 << 16;
     std::vector<std::vector<Index>> of_piece((samples_.size() + piece - 1) / piece);
+    std::vector<char> open(of_piece.size(), 0);
     parallel_tasks(context_, of_piece.size(), [&](std::size_t p) {
       for (std::size_t i = p * piece; i < std::min(samples_.size(), (p + 1) * piece); ++i)
-        if (labels_[i] != no_label && sets_.sets().is_root(static_cast<Index>(i)))
+        if (labels_[i] == no_label)
+          open[p] = 1;
+        else if (sets_.sets().is_root(static_cast<Index>(i)))
           of_piece[p].push_back(static_cast<Index>(i));
     });
     for (const auto& list : of_piece) roots_.insert(roots_.end(), list.begin(), list.end());
+    open_ = std::find(open.begin(), open.end(), 1) != open.end();
   }
 
   const SampleSet& samples_;
@@ -135,7 +151,21 @@ class Complex {
   std::vector<std::vector<Index>> polygons_;
   std::vector<std::int64_t> euler_;
   std::int64_t loops_ = 0;
+  bool open_ = false;
 };
+
+/// The samples, block by block, of labels that have several pieces.
+std::vector<std::vector<Index>> samples_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels,
+                                                        const std::vector<Index>& piece_count,
+                                                        const ExecutionContext& context) {
+  std::vector<std::vector<Index>> of_block(samples.blocks.size());
+  parallel_for(context, of_block.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b)
+      for (Index i = samples.blocks[b].begin; i < samples.blocks[b].end; ++i)
+        if (labels[i] != no_label && piece_count[labels[i]] > 1) of_block[b].push_back(i);
+  });
+  return of_block;
+}
 
 struct Piece {
   Index root = 0, label = 0;
@@ -147,7 +177,8 @@ struct Piece {
 /// All pieces of the labels that have several, by label; first the one that keeps it: the largest, or where the seed is
 /// fixed, the nearest.
 std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::vector<Index>& labels, Complex& complex,
-                                          const std::vector<Index>& piece_count, std::span<const Vec3> fixed) {
+                                          const std::vector<Index>& piece_count,
+                                          const std::vector<std::vector<Index>>& split, std::span<const Vec3> fixed) {
   UnionFind& sets = complex.sets();
   std::vector<Piece> pieces;
   std::vector<std::pair<Index, Index>> piece_of_root;  // (root, index into pieces), ascending
@@ -157,10 +188,9 @@ std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::v
       pieces.push_back({root, labels[root], 0, {}});
     }
   if (pieces.empty()) return pieces;
-  for (const SampleBlock& block : samples.blocks) {
-    const Vec3 center = samples.block_center(block);
-    for (Index i = block.begin; i < block.end; ++i) {
-      if (labels[i] == no_label || piece_count[labels[i]] <= 1) continue;
+  for (std::size_t b = 0; b < split.size(); ++b) {
+    const Vec3 center = samples.block_center(samples.blocks[b]);
+    for (const Index i : split[b]) {
       const Index root = sets.find(i);
       Piece& piece =
           pieces[std::lower_bound(piece_of_root.begin(), piece_of_root.end(), std::pair{root, Index{0}})->second];
@@ -180,15 +210,17 @@ std::vector<Piece> pieces_of_split_labels(const SampleSet& samples, const std::v
 /// longest border.
 class Splitter {
  public:
-  Splitter(const SampleSet& samples, std::vector<Index>& labels, Complex& complex, LabelComplex& result)
-      : samples_(samples), labels_(labels), complex_(complex), result_(result) {}
+  Splitter(const SampleSet& samples, std::vector<Index>& labels, Complex& complex, LabelComplex& result,
+           const ExecutionContext& context)
+      : samples_(samples), labels_(labels), complex_(complex), result_(result), context_(context) {}
 
   /// @param piece_count  by given label
   void split(const std::vector<Index>& piece_count, double mean_cell, std::span<const Vec3> fixed) {
     const std::size_t given_labels = piece_count.size();
-    pieces_ = pieces_of_split_labels(samples_, labels_, complex_, piece_count, fixed);
     result_.labels = given_labels;
-    if (pieces_.empty()) return;
+    if (std::none_of(piece_count.begin(), piece_count.end(), [](Index n) { return n > 1; })) return;
+    split_ = samples_of_split_labels(samples_, labels_, piece_count, context_);
+    pieces_ = pieces_of_split_labels(samples_, labels_, complex_, piece_count, split_, fixed);
     std::vector<std::pair<Index, Index>> label_of_root, tiny;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
       const Piece& piece = pieces_[p];
@@ -200,8 +232,8 @@ class Splitter {
       }
       give_new_label(piece, label_of_root);
     }
-    adopt_tiny(tiny, piece_count, label_of_root);
-    relabel(piece_count, label_of_root);
+    adopt_tiny(tiny, label_of_root);
+    relabel(label_of_root);
   }
 
  private:
@@ -220,8 +252,7 @@ class Splitter {
   }
 
   /// Counts the links of tiny pieces to other roots and hands each over to the most linked one.
-  void adopt_tiny(std::vector<std::pair<Index, Index>>& tiny, const std::vector<Index>& piece_count,
-                  std::vector<std::pair<Index, Index>>& label_of_root) {
+  void adopt_tiny(std::vector<std::pair<Index, Index>>& tiny, std::vector<std::pair<Index, Index>>& label_of_root) {
     if (tiny.empty()) return;
     std::sort(tiny.begin(), tiny.end());
     std::vector<char> block_tiny(samples_.blocks.size(), 0);
@@ -230,9 +261,8 @@ class Splitter {
       const auto it = std::lower_bound(tiny.begin(), tiny.end(), std::pair{root, Index{0}});
       return it != tiny.end() && it->first == root;
     };
-    for (std::size_t b = 0; b < samples_.blocks.size(); ++b)
-      for (Index i = samples_.blocks[b].begin; i < samples_.blocks[b].end && !block_tiny[b]; ++i)
-        block_tiny[b] = labels_[i] != no_label && piece_count[labels_[i]] > 1 && is_tiny(sets.find(i));
+    for (std::size_t b = 0; b < split_.size(); ++b)
+      block_tiny[b] = std::any_of(split_[b].begin(), split_[b].end(), [&](Index i) { return is_tiny(sets.find(i)); });
     std::vector<char> brick_dirty(complex_.bricks().size(), 0);
     std::vector<std::pair<Index, Index>> links;  // (tiny root, other root)
     CubeWalker walker(samples_);
@@ -276,16 +306,14 @@ class Splitter {
     dirty_ = std::move(brick_dirty);
   }
 
-  void relabel(const std::vector<Index>& piece_count, std::vector<std::pair<Index, Index>>& label_of_root) {
+  void relabel(std::vector<std::pair<Index, Index>>& label_of_root) {
     std::sort(label_of_root.begin(), label_of_root.end());
-    UnionFind& sets = complex_.sets();
-    for (std::size_t i = 0; i < labels_.size(); ++i) {
-      if (labels_[i] == no_label || piece_count[labels_[i]] <= 1) continue;
-      const Index root = sets.find(static_cast<Index>(i));
-      const auto it = std::lower_bound(label_of_root.begin(), label_of_root.end(), std::pair{root, Index{0}});
-      if (it != label_of_root.end() && it->first == root) new_labels_.push_back({static_cast<Index>(i), it->second});
-    }
-    for (const auto& [i, label] : new_labels_) labels_[i] = label;
+    for (const auto& of_block : split_)
+      for (const Index i : of_block) {
+        const Index root = complex_.sets().find(i);
+        const auto it = std::lower_bound(label_of_root.begin(), label_of_root.end(), std::pair{root, Index{0}});
+        if (it != label_of_root.end() && it->first == root) labels_[i] = it->second;
+      }
     if (!dirty_.empty()) complex_.refresh_polygons(dirty_);
   }
 
@@ -293,9 +321,10 @@ class Splitter {
   std::vector<Index>& labels_;
   Complex& complex_;
   LabelComplex& result_;
+  const ExecutionContext& context_;
+  std::vector<std::vector<Index>> split_;  ///< by block: the samples of labels that have several pieces
   std::vector<Piece> pieces_;
   std::vector<char> dirty_;
-  std::vector<std::pair<Index, Index>> new_labels_;
 };
 
 }  // namespace
@@ -308,13 +337,12 @@ LabelComplex connect_labels(const SampleSet& samples, std::vector<std::uint32_t>
   result.surface_euler = complex.surface_euler();
   std::vector<Index> piece_count(seeds.size(), 0);
   for (const Index root : complex.roots()) ++piece_count[labels[root]];
-  Splitter(samples, labels, complex, result)
+  Splitter(samples, labels, complex, result, context)
       .split(piece_count, samples.total_area / static_cast<double>(seeds.size()), seeds.fixed_positions());
 
   std::vector<Vec3> positions = seeds.positions;
   for (const CellComponent& piece : result.pieces) positions.push_back(piece.centroid);
-  const bool open = std::find(labels.begin(), labels.end(), no_label) != labels.end();
-  const DualMesh dual = triangulate_polygons(complex.polygons(), labels, positions, open);
+  const DualMesh dual = triangulate_polygons(complex.polygons(), labels, positions, complex.open(), context);
   result.triangles = dual.triangles;
   result.defects = dual.defects;
   for (std::size_t l = 0; l < seeds.size(); ++l)

@@ -3,61 +3,75 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/grouping.h"
+
 namespace evenmesh {
 
-/// Seeds in a uniform grid of cubic cells, in counting-sorted order.
+/// Seeds in rows along x, of square section, sorted along them: memory O(seeds + rows), whatever there is of empty
+/// space.
 class SeedGrid {
  public:
-  SeedGrid(std::span<const Vec3> seeds, double spacing) {
-    Box box;
-    for (const Vec3& s : seeds) box.add(s);
+  SeedGrid(std::span<const Vec3> seeds, double spacing, const ExecutionContext& context) {
+    const Box box = box_of(seeds, context);
     cell_ = std::max(1.5 * spacing, 1e-3 * box.longest_side() + 1e-300);
     origin_ = box.lo;
-    for (int a = 0; a < 3; ++a) size_[a] = static_cast<int>(box.size()[a] / cell_) + 1;
-    const std::size_t cells = std::size_t(size_[0]) * size_[1] * size_[2];
-    start_.assign(cells + 1, 0);
-    std::vector<std::uint32_t> cell_of(seeds.size());
-    for (std::size_t i = 0; i < seeds.size(); ++i) {
-      const auto c = cell_at(seeds[i]);
-      cell_of[i] = static_cast<std::uint32_t>(index(c[0], c[1], c[2]));
-      ++start_[cell_of[i] + 1];
-    }
-    for (std::size_t c = 0; c < cells; ++c) start_[c + 1] += start_[c];
-    order_.resize(seeds.size());
+    for (int a = 0; a < 2; ++a) size_[a] = static_cast<int>(box.size()[a + 1] / cell_) + 1;
+    const std::size_t rows = std::size_t(size_[0]) * size_[1];
+    groups_ = group_by_key(context, seeds.size(), rows, [&](std::size_t i) {
+      return static_cast<std::uint32_t>(row(row_at(seeds[i].y, 0), row_at(seeds[i].z, 1)));
+    });
     position_.resize(seeds.size());
-    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-    for (std::size_t i = 0; i < seeds.size(); ++i) {
-      const std::uint32_t at = next[cell_of[i]]++;
-      order_[at] = static_cast<std::uint32_t>(i);
-      position_[at] = seeds[i];
-    }
+    constexpr std::size_t grain = 1024;
+    parallel_for(context, rows, grain, [&](std::size_t begin, std::size_t end) {
+      const auto item = [&](std::size_t r) { return groups_.items.begin() + groups_.start[r]; };
+      for (std::size_t r = begin; r < end; ++r)
+        std::sort(item(r), item(r + 1), [&](std::uint32_t s, std::uint32_t t) { return seeds[s].x < seeds[t].x; });
+      for (std::size_t at = groups_.start[begin]; at < groups_.start[end]; ++at)
+        position_[at] = seeds[groups_.items[at]];
+    });
   }
 
-  /// Calls visit(seed, position) for the seeds in all cells that a box touches.
+  /// Calls visit(seed, position) for the seeds in a box, and some beside it.
   template <typename Visit>
   void visit_box(const Box& box, const Visit& visit) const {
-    const auto lo = cell_at(box.lo), hi = cell_at(box.hi);
-    for (int k = lo[2]; k <= hi[2]; ++k)
-      for (int j = lo[1]; j <= hi[1]; ++j) {
-        const std::size_t row = index(0, j, k);
-        for (std::uint32_t at = start_[row + lo[0]]; at < start_[row + hi[0] + 1]; ++at)
-          visit(order_[at], position_[at]);
+    const int j0 = row_at(box.lo.y, 0), j1 = row_at(box.hi.y, 0), k0 = row_at(box.lo.z, 1), k1 = row_at(box.hi.z, 1);
+    for (int k = k0; k <= k1; ++k)
+      for (int j = j0; j <= j1; ++j) {
+        const std::uint32_t end = groups_.start[row(j, k) + 1];
+        const auto first = std::partition_point(position_.begin() + groups_.start[row(j, k)], position_.begin() + end,
+                                                [&](const Vec3& p) { return p.x < box.lo.x; });
+        for (auto at = static_cast<std::uint32_t>(first - position_.begin()); at < end; ++at) {
+          if (position_[at].x > box.hi.x) break;
+          visit(groups_.items[at], position_[at]);
+        }
       }
   }
   double cell() const { return cell_; }
 
  private:
-  std::array<int, 3> cell_at(const Vec3& p) const {
-    std::array<int, 3> c{};
-    for (int a = 0; a < 3; ++a) c[a] = std::clamp(static_cast<int>((p[a] - origin_[a]) / cell_), 0, size_[a] - 1);
-    return c;
+  static Box box_of(std::span<const Vec3> seeds, const ExecutionContext& context) {
+    constexpr std::size_t piece = 1 << 16;
+    std::vector<Box> boxes((seeds.size() + piece - 1) / piece);
+    parallel_tasks(context, boxes.size(), [&](std::size_t p) {
+      for (std::size_t i = p * piece; i < std::min(seeds.size(), (p + 1) * piece); ++i) boxes[p].add(seeds[i]);
+    });
+    Box all;
+    for (const Box& box : boxes) {
+      all.add(box.lo);
+      all.add(box.hi);
+    }
+    return all;
   }
-  std::size_t index(int i, int j, int k) const { return (std::size_t(k) * size_[1] + j) * size_[0] + i; }
+  /// @param a  0: y, 1: z
+  int row_at(double coordinate, int a) const {
+    return std::clamp(static_cast<int>((coordinate - origin_[a + 1]) / cell_), 0, size_[a] - 1);
+  }
+  std::size_t row(int j, int k) const { return std::size_t(k) * size_[0] + j; }
 
   Vec3 origin_;
   double cell_ = 1;
-  std::array<int, 3> size_{};
-  std::vector<std::uint32_t> start_, order_;
+  int size_[2] = {1, 1};
+  Groups groups_;  ///< seeds by row
   std::vector<Vec3> position_;
 };
 
@@ -136,16 +150,40 @@ class ChunkSeeds {
 
 }  // namespace
 
+namespace {
+
+struct Range {
+  float lo, hi;
+};
+
+/// Of count > 0 values. Four at a time, which keeps vector units busy.
+Range range_of(const float* value, std::size_t count) {
+  float lo[4], hi[4];
+  std::fill_n(lo, 4, value[0]);
+  std::fill_n(hi, 4, value[0]);
+  const auto add = [&](std::size_t lane, float v) {
+    lo[lane] = v < lo[lane] ? v : lo[lane];
+    hi[lane] = hi[lane] < v ? v : hi[lane];
+  };
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4)
+    for (std::size_t lane = 0; lane < 4; ++lane) add(lane, value[i + lane]);
+  for (; i < count; ++i) add(0, value[i]);
+  return {std::min({lo[0], lo[1], lo[2], lo[3]}), std::max({hi[0], hi[1], hi[2], hi[3]})};
+}
+
+}  // namespace
+
 std::vector<BlockBox> block_boxes(const SampleSet& samples, const ExecutionContext& context) {
   std::vector<BlockBox> boxes(samples.blocks.size());
   parallel_for(context, boxes.size(), 256, [&](std::size_t begin, std::size_t end) {
     const std::vector<float>* coordinate[3] = {&samples.x, &samples.y, &samples.z};
     for (std::size_t b = begin; b < end; ++b)
       for (int a = 0; a < 3; ++a) {
-        const auto first = coordinate[a]->begin();
-        const auto [lo, hi] = std::minmax_element(first + samples.blocks[b].begin, first + samples.blocks[b].end);
-        boxes[b].center[a] = 0.5f * (*lo + *hi);
-        boxes[b].half[a] = 0.5f * (*hi - *lo) * (1 + 1e-6f);
+        const SampleBlock& block = samples.blocks[b];
+        const auto [lo, hi] = range_of(coordinate[a]->data() + block.begin, block.end - block.begin);
+        boxes[b].center[a] = 0.5f * (lo + hi);
+        boxes[b].half[a] = 0.5f * (hi - lo) * (1 + 1e-6f);
       }
   });
   return boxes;
@@ -174,9 +212,7 @@ void CandidateLists::update(std::span<const Vec3> seeds, const ExecutionContext&
     seeds_at_build_.clear();
     last_seeds_.clear();
   }
-  std::vector<std::uint32_t> strayed;
-  for (std::size_t i = 0; i < seeds_at_build_.size(); ++i)
-    if (!is_valid_for(i, seeds[i])) strayed.push_back(static_cast<std::uint32_t>(i));
+  const std::vector<std::uint32_t> strayed = strayed_seeds(seeds, context);
   if (seeds_at_build_.empty() || 8 * strayed.size() > seeds.size()) {
     build_all(seeds, spacing, context);
   } else if (!strayed.empty()) {
@@ -185,12 +221,27 @@ void CandidateLists::update(std::span<const Vec3> seeds, const ExecutionContext&
   last_seeds_.assign(seeds.begin(), seeds.end());
 }
 
+std::vector<std::uint32_t> CandidateLists::strayed_seeds(std::span<const Vec3> seeds,
+                                                         const ExecutionContext& context) const {
+  constexpr std::size_t piece = 1 << 14;
+  std::vector<std::vector<std::uint32_t>> of_piece((seeds_at_build_.size() + piece - 1) / piece);
+  parallel_tasks(context, of_piece.size(), [&](std::size_t p) {
+    for (std::size_t i = p * piece; i < std::min(seeds_at_build_.size(), (p + 1) * piece); ++i)
+      if (!is_valid_for(i, seeds[i])) of_piece[p].push_back(static_cast<std::uint32_t>(i));
+  });
+  std::vector<std::uint32_t> strayed;
+  for (const auto& some : of_piece) strayed.insert(strayed.end(), some.begin(), some.end());
+  return strayed;
+}
+
 void CandidateLists::build_all(std::span<const Vec3> seeds, double spacing, const ExecutionContext& context) {
   margins_.resize(seeds.size());
-  for (std::size_t i = 0; i < seeds.size(); ++i) margins_[i] = margin(i, seeds[i], spacing);
+  parallel_for(context, seeds.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) margins_[i] = margin(i, seeds[i], spacing);
+  });
   largest_margin_ = *std::max_element(margins_.begin(), margins_.end());
   seeds_at_build_.assign(seeds.begin(), seeds.end());
-  const SeedGrid grid(seeds_at_build_, spacing);
+  const SeedGrid grid(seeds_at_build_, spacing, context);
   parallel_tasks(context, chunks_.size(), [&](std::size_t c) {
     std::array<bool, chunk> all;
     all.fill(true);
@@ -209,14 +260,18 @@ void CandidateLists::build_around(std::span<const std::uint32_t> strayed, std::s
     margins_[i] = std::min(margin(i, seeds[i], spacing), largest_margin_);
     seeds_at_build_[i] = seeds[i];
   }
-  const SeedGrid grid(seeds_at_build_, spacing), changed(places, spacing);
+  const SeedGrid grid(seeds_at_build_, spacing, context), changed(places, spacing, context);
   parallel_tasks(context, chunks_.size(), [&](std::size_t c) {
+    const std::size_t first = c * chunk, count = end_of_chunk(c) - first;
     std::array<bool, chunk> stale{};
-    bool any = false;
+    std::array<Vec3, chunk> centers;
+    bool any = false, known = false;
     changed.visit_box(chunks_[c].region, [&](std::uint32_t, const Vec3& p) {
       if (!chunks_[c].region.contains(p)) return;
-      for (std::size_t b = c * chunk; b < end_of_chunk(c); ++b)
-        if (squared_norm(p - center(b)) <= double(reach_[b]) * reach_[b]) stale[b - c * chunk] = any = true;
+      for (std::size_t b = 0; !known && b < count; ++b) centers[b] = center(first + b);
+      known = true;
+      for (std::size_t b = 0; b < count; ++b)
+        if (squared_norm(p - centers[b]) <= double(reach_[first + b]) * reach_[first + b]) stale[b] = any = true;
     });
     if (any) build_chunk(c, stale, grid, spacing);
   });

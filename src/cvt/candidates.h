@@ -51,6 +51,8 @@ class CandidateLists {
 
   bool is_valid_for(std::size_t seed, const Vec3& at) const;
   float margin(std::size_t seed, const Vec3& at, double spacing) const;
+  /// Those that have left their margin, ascending.
+  std::vector<std::uint32_t> strayed_seeds(std::span<const Vec3> seeds, const ExecutionContext& context) const;
   void build_all(std::span<const Vec3> seeds, double spacing, const ExecutionContext& context);
   void build_around(std::span<const std::uint32_t> strayed, std::span<const Vec3> seeds, double spacing,
                     const ExecutionContext& context);

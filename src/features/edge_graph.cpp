@@ -31,21 +31,57 @@ struct BrickNodes {
   bool rough() const { return nodes.size() > 32 && 2 * nodes.size() > loops; }
 };
 
+/// Bounds of packed normals in the square of their octahedral map.
+struct NormalRange {
+  std::array<int, 2> lo{0xffff, 0xffff}, hi{0, 0};
+  void add(PackedNormal normal) {
+    const int at[2] = {static_cast<int>(normal.bits & 0xffff), static_cast<int>(normal.bits >> 16)};
+    for (std::size_t a = 0; a < 2; ++a) {
+      lo[a] = std::min(lo[a], at[a]);
+      hi[a] = std::max(hi[a], at[a]);
+    }
+  }
+  void add(const NormalRange& other) {
+    for (std::size_t a = 0; a < 2; ++a) {
+      lo[a] = std::min(lo[a], other.lo[a]);
+      hi[a] = std::max(hi[a], other.hi[a]);
+    }
+  }
+  int width() const { return std::max(hi[0] - lo[0], hi[1] - lo[1]); }
+};
+
+/// By block.
+std::vector<NormalRange> normal_ranges(const SampleSet& samples, const ExecutionContext& context) {
+  std::vector<NormalRange> ranges(samples.blocks.size());
+  parallel_for(context, ranges.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b)
+      for (std::uint32_t s = samples.blocks[b].begin; s < samples.blocks[b].end; ++s) ranges[b].add(samples.normal[s]);
+  });
+  return ranges;
+}
+
 class Finder {
  public:
-  Finder(const SampleSet& samples, double angle)
+  Finder(const SampleSet& samples, double angle, const ExecutionContext& context)
       : samples_(samples),
+        ranges_(normal_ranges(samples, context)),
         clear_(cosine(std::min(clear_angle * angle, 170.0))),
         sharp_(cosine(angle)),
         weak_(cosine(weak_angle * angle)),
         safe_step_(static_cast<int>(32767 * std::acos(weak_) / (3 * std::numbers::sqrt2)) - 2) {}
 
+  /// Whether nothing in the brick can be creased.
+  bool is_smooth(const CubeBrick& brick) const {
+    NormalRange all;
+    for (const std::int64_t b : brick.block)
+      if (b >= 0) all.add(ranges_[static_cast<std::size_t>(b)]);
+    return all.width() < safe_step_;
+  }
+
   void visit(const CubeBrick& brick, const std::uint32_t* loop, int n, BrickNodes& found) const {
     ++found.loops;
+    if (is_smooth(loop, n)) return;
     const auto after = [n](int i) { return i + 1 == n ? 0 : i + 1; };
-    bool smooth = true;
-    for (int i = 0; i < n; ++i) smooth &= is_nearly_same(samples_.normal[loop[i]], samples_.normal[loop[after(i)]]);
-    if (smooth) return;
     std::array<Vec3, 12> normal;
     for (int i = 0; i < n; ++i) normal[i] = unpack_normal(samples_.normal[loop[i]]);
     bool creased = false;
@@ -66,8 +102,17 @@ class Finder {
     return cosine < clear_ ? Sharpness::clear : cosine < sharp_ ? Sharpness::sharp : Sharpness::weak;
   }
 
+  bool is_smooth(const std::uint32_t* loop, int n) const {
+    PackedNormal before = samples_.normal[loop[n - 1]];
+    for (int i = 0; i < n; ++i) {
+      const PackedNormal normal = samples_.normal[loop[i]];
+      if (!are_nearly_same(before, normal)) return false;
+      before = normal;
+    }
+    return true;
+  }
   /// Whether the angle is surely below the limit: in the octahedral map a step of length d is an angle of 3·d at most.
-  bool is_nearly_same(PackedNormal a, PackedNormal b) const {
+  bool are_nearly_same(PackedNormal a, PackedNormal b) const {
     const int u = int(a.bits & 0xffff) - int(b.bits & 0xffff), v = int(a.bits >> 16) - int(b.bits >> 16);
     return std::abs(u) < safe_step_ && std::abs(v) < safe_step_;
   }
@@ -107,6 +152,7 @@ class Finder {
   }
 
   const SampleSet& samples_;
+  std::vector<NormalRange> ranges_;
   double clear_, sharp_, weak_;  ///< cosines
   int safe_step_;                ///< of either coordinate of packed normals
 };
@@ -127,9 +173,14 @@ bool face_apart(const FeatureNode& a, const FeatureNode& b, const Vec3& across) 
 FeatureGraph find_feature_graph(const SampleSet& samples, double angle, ExecutionContext& context) {
   const auto bricks = cube_bricks(samples, context);
   std::vector<BrickNodes> of_brick(bricks.size());
-  const Finder finder(samples, angle);
-  for_loops(samples, bricks, context,
-            [&](std::size_t b, const std::uint32_t* loop, int n) { finder.visit(bricks[b], loop, n, of_brick[b]); });
+  const Finder finder(samples, angle, context);
+  parallel_for(context, bricks.size(), 64, [&](std::size_t begin, std::size_t end) {
+    CubeWalker walker(samples);
+    for (std::size_t b = begin; b < end; ++b)
+      if (!finder.is_smooth(bricks[b]))
+        walker.walk(bricks[b],
+                    [&](const std::uint32_t* loop, int n) { finder.visit(bricks[b], loop, n, of_brick[b]); });
+  });
   FeatureGraph graph;
   std::vector<HalfLink> halves;
   for (BrickNodes& found : of_brick) {

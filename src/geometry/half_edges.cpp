@@ -37,6 +37,14 @@ void HalfEdges::pair_half_edges_at(std::uint32_t v, std::span<const Triangle> tr
 }
 
 std::uint32_t HalfEdges::umbrellas(std::size_t vertex) const {
+  // Mostly one goes once around and meets them all.
+  std::uint32_t seen = 0, h = outgoing_[vertex];
+  while (h != none && seen < corners(vertex)) {
+    ++seen;
+    h = opposite_[previous(h)];
+    if (h == outgoing_[vertex]) break;
+  }
+  if (seen > 0 && seen == corners(vertex) && h == outgoing_[vertex]) return 1;
   std::uint32_t count = 0;
   visit_umbrellas(vertex, [&](std::uint32_t, std::uint32_t umbrella) { count = umbrella + 1; });
   return count;

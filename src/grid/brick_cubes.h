@@ -2,6 +2,7 @@
 /// Walks the grid cubes that a surface passes through, brick by brick, and hands out their loops of crossings.
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace evenmesh {
 
 /// A brick of grid cubes and the blocks that hold crossings on its cubes' edges: [dx + 2·dy + 4·dz], −1 = none.
 struct CubeBrick {
-  std::array<std::int64_t, 8> block{};
+  std::array<std::int32_t, 8> block{};
   std::array<int, 3> at{};  ///< brick coordinates
 };
 
@@ -24,21 +25,16 @@ std::vector<CubeBrick> cube_bricks(const SampleSet& samples, const ExecutionCont
 /// Finds the loops of one brick's cubes; reusable, one per thread.
 class CubeWalker {
  public:
-  explicit CubeWalker(const SampleSet& samples) : samples_(samples) { clear_all(); }
+  explicit CubeWalker(const SampleSet& samples) : samples_(samples) {}
 
   /// Calls visit(const std::uint32_t* loop, const std::uint8_t* edges, int length): sample indices in cyclic order,
   /// counter-clockwise from outside, and the edges of the cube they lie on (see CubeLoops).
   template <typename Visit>
   void walk_edges(const CubeBrick& brick, const Visit& visit) {
-    const auto& loops = cube_loops();
     walk_cubes(brick, [&](unsigned corners, int i, int j, int k) {
-      const CubeLoops& cube = loops[corners];
-      std::uint32_t loop[12];
-      for (int l = 0; l < cube.count; ++l) {
-        int length = 0;
-        for (int e = cube.start[l]; e < cube.start[l + 1]; ++e) loop[length++] = sample_on(cube.edge[e], i, j, k);
-        visit(static_cast<const std::uint32_t*>(loop), &cube.edge[cube.start[l]], length);
-      }
+      for_loops(corners, i, j, k, [&](const std::uint32_t* loop, int first, int length) {
+        visit(loop, &loops_[corners].edge[first], length);
+      });
     });
   }
   /// Calls visit(const std::uint32_t* loop, int length).
@@ -47,52 +43,80 @@ class CubeWalker {
     walk_edges(brick, [&](const std::uint32_t* loop, const std::uint8_t*, int length) { visit(loop, length); });
   }
 
+  /// Calls visit(const std::uint32_t* loop, int length, unsigned links): where bit i is set, samples i and i + 1 of the
+  /// loop, or the last and the first, are to be linked here. So each pair of neighbours along the surface comes once,
+  /// from one of the two cubes that see it; of a part twice, as the other one may not be walked.
+  template <typename Visit>
+  void walk_links(const CubeBrick& brick, const Visit& visit) {
+    const unsigned from_both = samples_.left_out.empty() ? 0 : ~0u;
+    walk_cubes(brick, [&](unsigned corners, int i, int j, int k) {
+      const unsigned links = loops_[corners].lower_links | from_both;
+      for_loops(corners, i, j, k, [&](const std::uint32_t* loop, int first, int length) {
+        visit(loop, length, links >> first & ((1u << length) - 1));
+      });
+    });
+  }
+
   /// Calls visit(corners, i, j, k) for every crossed cube: bit c of `corners` is set where corner c is inside.
   template <typename Visit>
   void walk_cubes(const CubeBrick& brick, const Visit& visit) {
     load(brick);
-    for (int k = 0; k < 8; ++k)
-      for (unsigned rows = rows_with_crossings(k); rows != 0; rows &= rows - 1) {
-        const int j = __builtin_ctz(rows);
-        const Row row = this->row(j, k);
-        for (unsigned active = row.active; active != 0; active &= active - 1) {
-          const int i = __builtin_ctz(active);
-          visit(inside_corners(row, i, j, k), i, j, k);
-        }
+    for (int k = first_; k < last_; ++k)
+      for (std::uint64_t cubes = crossed_cubes(k); cubes != 0; cubes &= cubes - 1) {
+        const int at = std::countr_zero(cubes), i = at & 7, j = at >> 3;
+        const auto corners_of = [&](int y, int z) { return inside_[z][y] >> i & 3u; };
+        const unsigned corners =
+            corners_of(j, k) | corners_of(j + 1, k) << 2 | corners_of(j, k + 1) << 4 | corners_of(j + 1, k + 1) << 6;
+        visit(signs_agree_ ? corners : own_sign(corners, i, j, k), i, j, k);
       }
-    unload();
   }
 
  private:
-  static constexpr int side = brick_size + 1;
-  /// The cubes that share j and k.
-  struct Row {
-    std::uint64_t low, high;  ///< byte i: crossed edges of cube i, edges 0 to 7 and 8 to 11
-    unsigned active;          ///< bit i: cube i has any
-  };
+  static constexpr int side = brick_size + 1;  ///< points
+  static constexpr int pitch = 16;             ///< of rows
+  using Bits = std::uint16_t;
+  using Rows = std::array<std::array<Bits, pitch>, side>;  ///< [k][j], bit i
 
-  static int at(int axis, int i, int j, int k) { return ((axis * side + k) * side + j) * side + i; }
-  /// Bit j: the cubes of row j, k may be crossed.
-  unsigned rows_with_crossings(int k) const {
-    const unsigned lines = lines_[k] | lines_[k + 1];
-    return (lines | lines >> 1) & 0xffu;
+  static constexpr int at(int axis, int i, int j, int k) { return ((axis * side + k) * side + j) * side + i; }
+  /// By corners and position in CubeLoops: where the edge's sample is, counted from at(0, i, j, k); some zeros behind.
+  using Places = std::array<std::array<std::uint16_t, 16>, 256>;
+  static const Places& places_of_loops();
+
+  template <typename Visit>
+  void for_loops(unsigned corners, int i, int j, int k, const Visit& visit) const {
+    const CubeLoops& cube = loops_[corners];
+    const auto& place = places_[corners];
+    const std::uint32_t* sample = &sample_[at(0, i, j, k)];
+    std::uint32_t loop[12];
+    for (int first = 0, l = 1; l <= cube.count; ++l) {
+      const int length = cube.start[l] - first;
+      for (int e = 0; e < 4; ++e) loop[e] = sample[place[first + e]];  // most have three or four
+      for (int e = 4; e < length; ++e) loop[e] = sample[place[first + e]];
+      visit(loop, first, length);
+      first = cube.start[l];
+    }
   }
-  Row row(int j, int k) const;
-  unsigned inside_corners(const Row& row, int i, int j, int k) const;
-  std::uint32_t sample_on(int edge, int i, int j, int k) const {
-    const int axis = edge >> 2, a = edge & 1, b = edge >> 1 & 1;
-    return axis == 0   ? sample_[at(0, i, j + a, k + b)]
-           : axis == 1 ? sample_[at(1, i + a, j, k + b)]
-                       : sample_[at(2, i + a, j + b, k)];
-  }
-  void clear_all();
   void load(const CubeBrick& brick);
-  void unload();
+  void load_block(const SampleBlock& block, int d);
+  void find_inside_points();
+  void check_signs();
+  /// Bit 8·j + i: cube i, j, k is crossed.
+  std::uint64_t crossed_cubes(int k) const;
+  unsigned own_sign(unsigned corners, int i, int j, int k) const;
 
   const SampleSet& samples_;
-  std::array<std::uint32_t, 3 * side * side * side> sample_{};
-  std::array<std::uint16_t, 3 * side * side> crossed_{};  ///< [axis][k][j], bit i
-  std::array<std::uint16_t, side> lines_{};  ///< [k], bit j: there is a crossing on an edge from a point there
+  const std::array<CubeLoops, 256>& loops_ = cube_loops();
+  const Places& places_ = places_of_loops();
+  std::array<std::uint32_t, 3 * side * side * side> sample_{};  ///< by edge; meaningless where none is crossed
+  std::array<Rows, 3> crossed_{}, lower_inside_{};              ///< by axis of the edges
+  Rows inside_{};                                               ///< points
+  struct {
+    int i, j, k;
+    bool inside;
+  } some_{};                  ///< lower end of a crossed edge
+  unsigned layers_ = 0;       ///< bit k: of some crossed edge the lower end lies there
+  int first_ = 0, last_ = 0;  ///< layers of points that are looked at: there is nothing below and above
+  bool signs_agree_ = true;
 };
 
 }  // namespace evenmesh

@@ -19,7 +19,7 @@ BrickUnion::BrickUnion(const SampleSet& samples, const std::vector<CubeBrick>& b
     : own_(bricks.size()), sets_(own_parents(samples.size(), context)), across_(bricks.size()) {
   for (std::size_t b = 0; b < bricks.size(); ++b)
     if (const std::int64_t block = bricks[b].block[0]; block >= 0)
-      own_[b] = {samples.blocks[block].begin, samples.blocks[block].end};
+      own_[b] = {samples.blocks[block].begin, samples.blocks[block].end - samples.blocks[block].begin};
 }
 
 void BrickUnion::flatten(const ExecutionContext& context) {

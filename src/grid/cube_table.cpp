@@ -26,6 +26,11 @@ constexpr int face_corners[6][4] = {
     {corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)},
 };
 
+bool on_lower_face(int edge, int other) {
+  constexpr unsigned faces[12] = {6, 4, 2, 0, 5, 4, 1, 0, 3, 2, 1, 0};  // bit a: the edge lies where axis a is 0
+  return (faces[edge] & faces[other]) != 0;
+}
+
 CubeLoops loops_of(unsigned inside) {
   const auto is_inside = [&](int c) { return (inside >> c & 1u) != 0; };
   std::array<int, 12> next{};
@@ -45,6 +50,7 @@ CubeLoops loops_of(unsigned inside) {
     if (next[first] < 0 || done[first]) continue;
     for (int e = first; !done[e]; e = next[e]) {
       done[e] = true;
+      if (on_lower_face(e, next[e])) loops.lower_links |= static_cast<std::uint16_t>(1u << filled);
       loops.edge[filled++] = static_cast<std::uint8_t>(e);
     }
     loops.start[++loops.count] = static_cast<std::uint8_t>(filled);

@@ -12,6 +12,9 @@ struct CubeLoops {
   std::uint8_t count = 0;               ///< loops, at most 4
   std::array<std::uint8_t, 5> start{};  ///< loop l is edges start[l] … start[l + 1] − 1
   std::array<std::uint8_t, 12> edge{};  ///< cyclic, counter-clockwise seen from outside the solid
+  /// Bit e: edge[e] and the next of its loop lie on a face towards lower coordinates. Of the two cubes that see such a
+  /// pair of edges it is so for one.
+  std::uint16_t lower_links = 0;
 };
 
 /// Loops for each of the 256 patterns of inside corners (bit c set: corner c is inside).
