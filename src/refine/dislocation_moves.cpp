@@ -8,10 +8,11 @@ namespace evenmesh {
 namespace {
 
 constexpr std::uint32_t none = EditableMesh::none;
-constexpr int highest_cost = 8;  ///< of a chain on its way
+constexpr int highest_cost = 8;    ///< of a chain on its way
+constexpr int longest_chain = 16;  ///< edits
 constexpr int rings = 3;
 constexpr int first_sweeps = 4, last_sweeps = 10;
-constexpr double hopeless = 0.5;  ///< energy that the last sweeps cannot gain
+constexpr double hopeless = 0.15;  ///< energy that the last sweeps cannot gain
 
 double weight_of(int cost) {
   static const std::array<double, 33> table = [] {
@@ -100,51 +101,57 @@ void DislocationMoves::touch(std::uint32_t v) {
   if (std::find(touched_.begin(), touched_.end(), v) == touched_.end()) touched_.push_back(v);
 }
 
+bool DislocationMoves::flip(std::uint32_t h) {
+  const std::uint32_t o = mesh_.opposite(h), c = mesh_.apex(h), d = mesh_.apex(o);
+  if (c == d || mesh_.joined(c, d)) return false;
+  for (const std::uint32_t v : {mesh_.origin(h), mesh_.origin(o), c, d}) touch(v);
+  mesh_.flip(h, journal_);
+  made_.push_back({std::min(c, d), std::max(c, d)});
+  return true;
+}
+
+bool DislocationMoves::collapse(std::uint32_t h) {
+  if (!mesh_.may_collapse(h)) return false;
+  const std::uint32_t o = mesh_.opposite(h), a = mesh_.origin(h), b = mesh_.origin(o);
+  for (const std::uint32_t v : {b, mesh_.apex(h), mesh_.apex(o)}) touch(v);
+  std::erase(touched_, a);
+  gone_.insert(gone_.end(), {h / 3, o / 3});
+  mesh_.collapse(h, journal_, slots_);
+  --added_;
+  if (!common_.held[b]) mesh_.move(b, 0.5 * (mesh_.position(a) + mesh_.position(b)), journal_);
+  return true;
+}
+
+void DislocationMoves::split(std::uint32_t first, std::uint32_t last) {
+  const std::uint32_t v = mesh_.origin(first), a = mesh_.target(first), b = mesh_.target(last);
+  const std::uint32_t w = mesh_.split(first, last, journal_, slots_);
+  ++added_;
+  common_.part[w] = part_;
+  common_.held[w] = 0;
+  made_.push_back({std::min(v, w), std::max(v, w)});
+  const auto apart_from = [&](std::uint32_t u, std::uint32_t other) {
+    constexpr double share = 0.4;  // of the way to the middle of its other neighbours
+    Vec3 sum;
+    mesh_.around(u, [&](std::uint32_t e) { sum += mesh_.position(mesh_.target(e)) - mesh_.position(u); });
+    sum -= mesh_.position(other) - mesh_.position(u);
+    return mesh_.position(u) + share / (mesh_.valence(u) - 1) * sum;
+  };
+  const Vec3 to = apart_from(w, v), back = apart_from(v, w);
+  mesh_.move(w, to, journal_);
+  mesh_.move(v, back, journal_);
+  for (const std::uint32_t u : {v, w, a, b}) touch(u);
+}
+
 bool DislocationMoves::apply(const Edit& edit) {
-  const std::uint32_t h = edit.first, o = mesh_.opposite(h);
-  const std::uint32_t a = mesh_.origin(h), b = mesh_.target(h), c = mesh_.apex(h), d = mesh_.apex(o);
-  if (edit.kind == Kind::flip) {
-    if (c == d || mesh_.joined(c, d)) return false;
-    mesh_.flip(h, journal_);
-    made_.push_back({std::min(c, d), std::max(c, d)});
-    for (const std::uint32_t v : {a, b, c, d}) touch(v);
-  } else if (edit.kind == Kind::collapse) {
-    if (!mesh_.may_collapse(h)) return false;
-    mesh_.collapse(h, journal_, slots_);
-    --added_;
-    gone_.push_back(h / 3);
-    gone_.push_back(o / 3);
-    std::erase(touched_, a);
-    if (!common_.held[b]) mesh_.move(b, 0.5 * (mesh_.position(a) + mesh_.position(b)), journal_);
-    for (const std::uint32_t v : {b, c, d}) touch(v);
-  } else {
-    const std::uint32_t far = mesh_.target(edit.last);
-    const std::uint32_t w = mesh_.split(h, edit.last, journal_, slots_);
-    ++added_;
-    common_.part[w] = part_;
-    common_.held[w] = 0;
-    made_.push_back({std::min(a, w), std::max(a, w)});
-    const auto towards_ring = [&](std::uint32_t v, std::uint32_t other) {
-      Vec3 sum;
-      double n = 0;
-      mesh_.around(v, [&](std::uint32_t e) {
-        if (mesh_.target(e) == other) return;
-        sum += mesh_.position(mesh_.target(e));
-        ++n;
-      });
-      return mesh_.position(v) + 0.4 * (sum / n - mesh_.position(v));
-    };
-    const Vec3 to = towards_ring(w, a), back = towards_ring(a, w);
-    mesh_.move(w, to, journal_);
-    mesh_.move(a, back, journal_);
-    for (const std::uint32_t v : {a, w, b, far}) touch(v);
-  }
+  if (edit.kind == Kind::flip && !flip(edit.first)) return false;
+  if (edit.kind == Kind::collapse && !collapse(edit.first)) return false;
+  if (edit.kind == Kind::split) split(edit.first, edit.last);
   cost_ += edit.cost;
   return true;
 }
 
-bool DislocationMoves::grow_chain(std::uint32_t v, const MoveParameters& parameters) {
-  for (int length = 0; length < parameters.longest_chain; ++length) {
+bool DislocationMoves::grow_chain(std::uint32_t v) {
+  for (int length = 0; length < longest_chain; ++length) {
     Edit edit;
     if (!choose(v, edit) || !apply(edit)) return false;
     if (cost_ <= 0) return true;
@@ -156,34 +163,44 @@ bool DislocationMoves::grow_chain(std::uint32_t v, const MoveParameters& paramet
   return false;
 }
 
-bool DislocationMoves::settle(const MoveParameters& parameters) {
-  ++counts.relaxed;
-  const double surplus_before = surplus, surplus_now = surplus + added_;
-  const double gain = 0.5 * parameters.irregular_cost * cost_ +
-                      parameters.count_cost * (surplus_now * surplus_now - surplus_before * surplus_before);
-  const double allowed = -parameters.temperature * std::log(1 - random_.uniform());
-  patch_.gather(touched_, rings, journal_);
-  double lost = 0;
+double DislocationMoves::energy_of_gone() {
+  double energy = 0;
   for (const std::uint32_t t : gone_)
     if (!mesh_.triangle_in_use(t)) {
-      lost -= mesh_.energy(t);
+      energy += mesh_.energy(t);
       mesh_.set_energy(t, 0, journal_);
     }
+  return energy;
+}
+
+bool DislocationMoves::settle(const MoveParameters& parameters) {
+  ++counts.relaxed;
+  const double before = surplus_, after = surplus_ + added_;
+  const double cost =
+      0.5 * parameters.irregular_cost * cost_ + parameters.count_cost * (after * after - before * before);
+  const double allowed = -parameters.temperature * std::log(1 - random_.uniform()) - cost;
+  patch_.gather(touched_, rings, journal_);
   patch_.sweep(first_sweeps);
-  double growth = lost + patch_.renew_energies(journal_);
-  if (!(growth + gain < allowed + hopeless)) return false;
-  ++counts.finished;
+  double growth = patch_.renew_energies(journal_) - energy_of_gone();
+  if (!(growth < allowed + hopeless)) return false;
   patch_.sweep(last_sweeps);
   patch_.project();
   growth += patch_.renew_energies(journal_);
-  if (!(growth + gain < allowed) || !patch_.faces_outwards()) return false;
-  std::vector<std::uint32_t> before(patch_.triangles().begin(), patch_.triangles().end());
-  for (const std::uint32_t t : gone_)
-    if (!mesh_.triangle_in_use(t)) before.push_back(t);
-  std::sort(before.begin(), before.end());
-  before.erase(std::unique(before.begin(), before.end()), before.end());
-  if (points_.hand_over(mesh_, before, patch_.triangles(), parameters.tolerance)) return true;
-  ++counts.bent;
+  return growth < allowed && patch_.faces_outwards() && stays_near(parameters.tolerance);
+}
+
+bool DislocationMoves::stays_near(double tolerance) {
+  const auto sort = [](std::vector<std::uint32_t>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  std::vector<std::uint32_t> before(patch_.triangles().begin(), patch_.triangles().end()), changed;
+  before.insert(before.end(), gone_.begin(), gone_.end());
+  for (const std::uint32_t v : touched_) mesh_.around(v, [&](std::uint32_t h) { changed.push_back(h / 3); });
+  sort(before);
+  sort(changed);
+  if (points_.hand_over(mesh_, before, patch_.triangles(), changed, tolerance)) return true;
+  ++counts.off_surface;
   return false;
 }
 
@@ -195,28 +212,28 @@ bool DislocationMoves::attempt(std::uint32_t v, const MoveParameters& parameters
   cost_ = added_ = 0;
   climb_share_ = parameters.climb_share;
   slots_before_ = slots_;
-  if (!grow_chain(v, parameters) || !settle(parameters)) {
+  if (!grow_chain(v) || !settle(parameters)) {
     mesh_.roll_back(journal_);
     slots_ = slots_before_;
     return false;
   }
   mesh_.commit(journal_);
-  surplus += added_;
+  surplus_ += added_;
   ++counts.accepted;
   return true;
 }
 
-void DislocationMoves::attempt_any(std::vector<std::uint32_t>& irregular, const MoveParameters& parameters) {
-  const std::size_t i = random_.below(irregular.size());
-  const std::uint32_t v = irregular[i];
+void DislocationMoves::attempt_any(const MoveParameters& parameters) {
+  const std::size_t i = random_.below(irregular_.size());
+  const std::uint32_t v = irregular_[i];
   if (!mesh_.vertex_in_use(v) || mesh_.valence(v) == 6) {
-    irregular.erase(irregular.begin() + static_cast<std::ptrdiff_t>(i));
+    irregular_.erase(irregular_.begin() + static_cast<std::ptrdiff_t>(i));
     return;
   }
   if (!attempt(v, parameters)) return;
   for (const std::uint32_t w : touched_)
-    if (mesh_.valence(w) != 6 && std::find(irregular.begin(), irregular.end(), w) == irregular.end())
-      irregular.push_back(w);
+    if (mesh_.valence(w) != 6 && std::find(irregular_.begin(), irregular_.end(), w) == irregular_.end())
+      irregular_.push_back(w);
 }
 
 }  // namespace evenmesh

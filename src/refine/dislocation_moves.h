@@ -19,23 +19,22 @@ constexpr int valence_cost(std::uint32_t valence) {
 }
 
 struct MoveParameters {
-  double irregular_cost = 0.2;  ///< energy of a vertex with five or seven edges, beyond that of the shapes
-  double temperature = 0.05;    ///< energy
+  double irregular_cost = 0.4;  ///< energy of a vertex with five or seven edges, beyond that of the shapes
+  double temperature = 0.01;    ///< energy
   double count_cost = 0.02;     ///< energy by the square of vertices too many or too few
   double tolerance = 0;         ///< of the distance from the surface, model units
-  int longest_chain = 8;
-  double climb_share = 0.3;  ///< how much rarer splits and collapses are tried than flips
+  double climb_share = 0.3;     ///< how much rarer splits and collapses are tried than flips
 };
 
 struct MoveCounts {
-  std::size_t attempts = 0, relaxed = 0, finished = 0, bent = 0, accepted = 0;
+  std::size_t attempts = 0, relaxed = 0, off_surface = 0, accepted = 0;
 };
 
 /// Works on one part of a mesh, alone there.
 class DislocationMoves {
  public:
   DislocationMoves(PatchSurroundings& common, ReferencePoints& points, const VertexConstraints& constraints,
-                   std::uint32_t part, EditableMesh::FreeSlots slots, std::uint64_t seed)
+                   std::uint32_t part, EditableMesh::FreeSlots slots, std::uint64_t seed, int surplus)
       : common_(common),
         mesh_(common.mesh),
         points_(points),
@@ -43,12 +42,15 @@ class DislocationMoves {
         part_(part),
         slots_(std::move(slots)),
         random_(seed),
-        patch_(common, part) {}
+        patch_(common, part),
+        surplus_(surplus) {}
 
-  /// Tries a chain that begins at one of the irregular vertices, and keeps the list of them.
-  void attempt_any(std::vector<std::uint32_t>& irregular, const MoveParameters& parameters);
+  void add_irregular(std::uint32_t v) { irregular_.push_back(v); }
+  std::size_t irregular_count() const { return irregular_.size(); }
   /// Vertices there are too many, below zero too few.
-  int surplus = 0;
+  int surplus() const { return surplus_; }
+  /// Tries a chain that begins at one of the irregular vertices.
+  void attempt_any(const MoveParameters& parameters);
   MoveCounts counts;
 
  private:
@@ -69,10 +71,15 @@ class DislocationMoves {
   void consider_collapse(std::uint32_t h);
   void consider_splits(std::uint32_t v, std::uint32_t wing);
   bool choose(std::uint32_t v, Edit& edit);
+  bool flip(std::uint32_t h);
+  bool collapse(std::uint32_t h);
+  void split(std::uint32_t first, std::uint32_t last);
   bool apply(const Edit& edit);
   void touch(std::uint32_t v);
-  bool grow_chain(std::uint32_t v, const MoveParameters& parameters);
+  bool grow_chain(std::uint32_t v);
+  double energy_of_gone();
   bool settle(const MoveParameters& parameters);
+  bool stays_near(double tolerance);
   bool made_here(std::uint32_t a, std::uint32_t b) const;
 
   PatchSurroundings& common_;
@@ -84,9 +91,11 @@ class DislocationMoves {
   Random random_;
   PatchRelaxation patch_;
   EditJournal journal_;
+  std::vector<std::uint32_t> irregular_;  ///< and some that no longer are
+  int surplus_;
   // The chain.
-  std::vector<std::uint32_t> touched_, gone_;
-  std::vector<std::array<std::uint32_t, 2>> made_;
+  std::vector<std::uint32_t> touched_, gone_;       ///< vertices that have changed, triangles that vanished
+  std::vector<std::array<std::uint32_t, 2>> made_;  ///< edges, lower vertex first
   int cost_ = 0, added_ = 0;
   double climb_share_ = 0;
   // The choice of the next edit.

@@ -1,5 +1,8 @@
 #include "refine/editable_mesh.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace evenmesh {
 
 EditableMesh::EditableMesh(const Mesh& mesh, std::size_t room, const ExecutionContext& context)
@@ -19,6 +22,10 @@ EditableMesh::EditableMesh(const Mesh& mesh, std::size_t room, const ExecutionCo
   }
   for (std::uint32_t h = 0; h < 3 * mesh.triangles.size(); ++h)
     if (opposite_[h] == none) valence_[origin_[h]] = valence_[target(h)] = 0;
+}
+
+std::size_t EditableMesh::vertices_in_use() const {
+  return outgoing_.size() - static_cast<std::size_t>(std::count(outgoing_.begin(), outgoing_.end(), none));
 }
 
 bool EditableMesh::joined(std::uint32_t a, std::uint32_t b) const {
@@ -127,6 +134,22 @@ void EditableMesh::roll_back(EditJournal& journal) const {
   for (std::size_t i = journal.places_.size(); i-- > 0;) *journal.places_[i].at = journal.places_[i].before;
   for (std::size_t i = journal.energies_.size(); i-- > 0;) *journal.energies_[i].at = journal.energies_[i].before;
   commit(journal);
+}
+
+Facing facing_of(const EditableMesh& mesh, std::uint32_t v) {
+  const Vec3& p = mesh.position(v);
+  const auto normal = [&](std::uint32_t h) {
+    return cross(mesh.position(mesh.target(h)) - p, mesh.position(mesh.apex(h)) - p);
+  };
+  Facing facing;
+  mesh.around(v, [&](std::uint32_t h) { facing.normal += normal(h); });
+  facing.normal = normalized(facing.normal);
+  mesh.around(v, [&](std::uint32_t h) {
+    const Vec3 n = normal(h);
+    const double length = norm(n);
+    facing.least_cosine = std::min(facing.least_cosine, length > 0 ? dot(n, facing.normal) / length : -1);
+  });
+  return facing;
 }
 
 }  // namespace evenmesh

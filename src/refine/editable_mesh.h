@@ -55,6 +55,7 @@ class EditableMesh {
 
   std::size_t vertex_slots() const { return outgoing_.size(); }
   std::size_t triangle_slots() const { return energy_.size(); }
+  std::size_t vertices_in_use() const;
   bool vertex_in_use(std::uint32_t v) const { return outgoing_[v] != none; }
   bool triangle_in_use(std::uint32_t t) const { return origin_[3 * t] != none; }
 
@@ -68,6 +69,7 @@ class EditableMesh {
   /// Number of edges; @pre v not on the boundary, which valence(v) == 0 tells.
   std::uint32_t valence(std::uint32_t v) const { return valence_[v]; }
   bool on_boundary(std::uint32_t v) const { return valence_[v] == 0; }
+  Triangle corners(std::uint32_t t) const { return {origin_[3 * t], origin_[3 * t + 1], origin_[3 * t + 2]}; }
   const Vec3& position(std::uint32_t v) const { return position_[v]; }
   double energy(std::uint32_t t) const { return energy_[t]; }
 
@@ -127,5 +129,13 @@ class EditableMesh {
   std::vector<Vec3> position_;                     ///< by vertex
   std::vector<double> energy_;                     ///< by triangle
 };
+
+/// Area-weighted normal at a vertex that is not on the boundary, and the cosine of the largest angle between it and the
+/// normal of a triangle there; −1 where one has no area.
+struct Facing {
+  Vec3 normal;
+  double least_cosine = 1;
+};
+Facing facing_of(const EditableMesh& mesh, std::uint32_t v);
 
 }  // namespace evenmesh

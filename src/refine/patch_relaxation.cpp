@@ -1,8 +1,8 @@
 #include "refine/patch_relaxation.h"
 
 #include <algorithm>
-#include <array>
 
+#include "geometry/triangle.h"
 #include "refine/vertex_rings.h"
 
 namespace evenmesh {
@@ -30,6 +30,7 @@ void PatchRelaxation::gather_triangles_around(std::uint32_t v, std::uint32_t mar
 void PatchRelaxation::gather(std::span<const std::uint32_t> centres, int rings, EditJournal& journal) {
   ++mark_;
   vertices_.clear();
+  held_centres_.clear();
   triangles_.clear();
   const auto add = [&](std::uint32_t v) {
     if (!movable(v) || common_.vertex_mark[v] == mark_) return;
@@ -39,6 +40,7 @@ void PatchRelaxation::gather(std::span<const std::uint32_t> centres, int rings, 
   for (const std::uint32_t v : centres)
     if (mesh_.vertex_in_use(v)) {
       add(v);
+      if (!movable(v)) held_centres_.push_back(v);
       gather_triangles_around(v, mark_);
     }
   std::size_t begin = 0;
@@ -66,7 +68,7 @@ void PatchRelaxation::find_rings() {
 void PatchRelaxation::find_frames() {
   frames_.clear();
   for (const std::uint32_t v : vertices_) {
-    const TangentPlane plane(normal(v));
+    const TangentPlane plane(facing_of(mesh_, v).normal);
     frames_.push_back({plane.u, plane.v, common_.twice_target_at(mesh_.position(v))});
   }
 }
@@ -110,50 +112,44 @@ void PatchRelaxation::project() {
   }
 }
 
-void PatchSurroundings::find_energies() {
-  for (std::uint32_t t = 0; t < mesh.triangle_slots(); ++t) {
-    if (!mesh.triangle_in_use(t)) continue;
-    const Triangle corners{mesh.origin(3 * t), mesh.origin(3 * t + 1), mesh.origin(3 * t + 2)};
-    const Vec3 &a = mesh.position(corners[0]), &b = mesh.position(corners[1]), &c = mesh.position(corners[2]);
-    mesh.place_energy(t, energy.of(squared_norm(b - a) + squared_norm(c - b) + squared_norm(a - c),
-                                   norm(cross(b - a, c - a)), twice_target_at((1.0 / 3) * (a + b + c))));
+double PatchSurroundings::find_targets(const Mesh& of) {
+  twice_target = 1;
+  double area = 0, wanted = 0;
+  for (std::size_t t = 0; t < of.triangles.size(); ++t) {
+    const auto [a, b, c] = corners_of(of, t);
+    area += triangle_area(a, b, c);
+    wanted += twice_target_at((1.0 / 3) * (a + b + c));
   }
+  twice_target = 2 * area / wanted;
+  return area;
+}
+
+double PatchSurroundings::energy_of(std::uint32_t t) const {
+  const auto [i, j, k] = mesh.corners(t);
+  const Vec3 &a = mesh.position(i), &b = mesh.position(j), &c = mesh.position(k);
+  return energy.of(squared_norm(b - a) + squared_norm(c - b) + squared_norm(a - c), norm(area_normal(a, b, c)),
+                   twice_target_at((1.0 / 3) * (a + b + c)));
+}
+
+void PatchSurroundings::find_energies() {
+  for (std::uint32_t t = 0; t < mesh.triangle_slots(); ++t)
+    if (mesh.triangle_in_use(t)) mesh.place_energy(t, energy_of(t));
 }
 
 double PatchRelaxation::renew_energies(EditJournal& journal) {
   double growth = 0;
   for (const std::uint32_t t : triangles_) {
-    const Triangle at = corners(t);
-    const Vec3 &a = mesh_.position(at[0]), &b = mesh_.position(at[1]), &c = mesh_.position(at[2]);
-    const double energy =
-        common_.energy.of(squared_norm(b - a) + squared_norm(c - b) + squared_norm(a - c), norm(cross(b - a, c - a)),
-                          common_.twice_target_at((1.0 / 3) * (a + b + c)));
+    const double energy = common_.energy_of(t);
     growth += energy - mesh_.energy(t);
     mesh_.set_energy(t, energy, journal);
   }
   return growth;
 }
 
-Vec3 PatchRelaxation::normal(std::uint32_t v) const {
-  Vec3 sum;
-  const Vec3& p = mesh_.position(v);
-  mesh_.around(v, [&](std::uint32_t h) {
-    sum += cross(mesh_.position(mesh_.target(h)) - p, mesh_.position(mesh_.apex(h)) - p);
-  });
-  return normalized(sum);
-}
-
 bool PatchRelaxation::faces_outwards() const {
-  for (const std::uint32_t v : vertices_) {
-    const Vec3 facing = normal(v), &p = mesh_.position(v);
-    bool well = true;
-    mesh_.around(v, [&](std::uint32_t h) {
-      const Vec3 across = cross(mesh_.position(mesh_.target(h)) - p, mesh_.position(mesh_.apex(h)) - p);
-      well = well && dot(across, facing) > least_cosine * norm(across);
-    });
-    if (!well) return false;
-  }
-  return true;
+  const auto well = [&](std::uint32_t v) { return facing_of(mesh_, v).least_cosine > least_cosine; };
+  return std::all_of(vertices_.begin(), vertices_.end(), well) &&
+         std::all_of(held_centres_.begin(), held_centres_.end(), well);
 }
 
 }  // namespace evenmesh

@@ -24,7 +24,10 @@ struct PatchSurroundings {
   std::vector<char> held{};           ///< by vertex: does not move
   std::vector<std::uint32_t> vertex_mark{}, triangle_mark{};
 
+  /// Sets twice_target for the area that the mesh has, which it returns.
+  double find_targets(const Mesh& of);
   double twice_target_at(const Vec3& p) const;
+  double energy_of(std::uint32_t t) const;
   /// Energies of all triangles.
   void find_energies();
 };
@@ -57,16 +60,12 @@ class PatchRelaxation {
   void find_frames();
   void relax(std::size_t i);
   void gather_triangles_around(std::uint32_t v, std::uint32_t mark);
-  Vec3 normal(std::uint32_t v) const;
-  Triangle corners(std::uint32_t t) const {
-    return {mesh_.origin(3 * t), mesh_.origin(3 * t + 1), mesh_.origin(3 * t + 2)};
-  }
-
   PatchSurroundings& common_;
   EditableMesh& mesh_;
   std::uint32_t part_;
   std::uint32_t mark_ = 0;
   std::vector<std::uint32_t> vertices_, triangles_;
+  std::vector<std::uint32_t> held_centres_;
   std::vector<std::uint32_t> ring_start_, ring_;  ///< by vertex of the patch: its neighbours, counter-clockwise
   std::vector<Frame> frames_;                     ///< by vertex of the patch
   std::vector<PlanePoint> flat_;
