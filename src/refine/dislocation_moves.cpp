@@ -38,6 +38,7 @@ void DislocationMoves::consider(const Edit& edit, double share) {
 
 void DislocationMoves::consider_flip(std::uint32_t h) {
   const std::uint32_t o = mesh_.opposite(h);
+  if (o == none) return;
   const std::uint32_t a = mesh_.origin(h), b = mesh_.origin(o), c = mesh_.apex(h), d = mesh_.apex(o);
   if (!mine(a) || !mine(b) || !mine(c) || !mine(d)) return;
   if (constraints_.edge(a, b) || made_here(a, b)) return;
@@ -46,6 +47,7 @@ void DislocationMoves::consider_flip(std::uint32_t h) {
 
 void DislocationMoves::consider_collapse(std::uint32_t h) {
   const std::uint32_t o = mesh_.opposite(h);
+  if (o == none) return;
   const std::uint32_t a = mesh_.origin(h), b = mesh_.origin(o), c = mesh_.apex(h), d = mesh_.apex(o);
   if (!mine(a) || !mine(b) || !mine(c) || !mine(d) || common_.held[a] || made_here(a, b)) return;
   const int cost = valence_cost(mesh_.valence(a) + mesh_.valence(b) - 4) - valence_cost(mesh_.valence(a)) -
