@@ -10,6 +10,9 @@
 #include "grid/coarsen.h"
 #include "pipeline/draft.h"
 #include "pipeline/tessellator.h"
+#include "refine/dislocations.h"
+#include <ctime>
+#include <cstdio>
 #include "refine/flips.h"
 #include "refine/shape_smoothing.h"
 
@@ -193,6 +196,17 @@ class Levels {
       Draft draft = extract(level.result, options_, context_);
       flip_to_delaunay(draft.mesh, draft.constraints, context_);
       smooth(draft, level.result.sampling.samples, evaluations);
+      if (evaluations == base_evaluations && env("EM_WORK", 0) > 0) {
+        const auto projector = make_projector(level.result.sampling.samples);
+        flip_to_delaunay(draft.mesh, draft.constraints, context_);
+        timespec t0, t1;
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t0);
+        const auto r = remove_dislocations(draft.mesh, projector.get(), draft.sizing, {.work = std::size_t(env("EM_WORK", 0)), .size_weight = smoothing_size_weight, .irregular_cost = env("EM_COST", 0.4), .tolerance = env("EM_TOL", 0.3)}, context_, draft.constraints);
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t1);
+        std::fprintf(stderr, "dbg dislocations %zu -> %zu of %zu, cpu %.3f\n", r.irregular_before, r.irregular, draft.mesh.vertices.size(), t1.tv_sec - t0.tv_sec + 1e-9 * (t1.tv_nsec - t0.tv_nsec));
+        draft.planes.clear();
+        smooth(draft, level.result.sampling.samples, evaluations / 2);
+      }
       flip_to_delaunay(draft.mesh, draft.constraints, context_);
       return draft;
     });

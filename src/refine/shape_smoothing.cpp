@@ -85,6 +85,7 @@ class Smoothing {
         context_(context),
         constraints_(constraints),
         rings_(mesh, context),
+        stays_(mesh.vertices.size()),
         base_(mesh.vertices),
         frames_(mesh.vertices.size()),
         at_(mesh.vertices.size()),
@@ -100,6 +101,7 @@ class Smoothing {
         plane_energy_(mesh.vertices.size()) {}
 
   ShapeSmoothingResult run() {
+    each_vertex([&](std::uint32_t v) { stays_[v] = must_stay(v); });
     make_frames();
     result_.energy_before = mean(energy_);
     std::size_t steps = 0;
@@ -120,9 +122,14 @@ class Smoothing {
 
  private:
   double mean(double energy) const { return energy / static_cast<double>(mesh_.triangles.size()); }
-  bool stays(std::uint32_t v) const {
-    return (v < options_.held.size() && options_.held[v] != 0) || constraints_.at_corner(v) || rings_.on_boundary(v) ||
-           rings_.triangles(v).empty();
+  bool stays(std::uint32_t v) const { return stays_[v] != 0; }
+  bool must_stay(std::uint32_t v) const {
+    if (rings_.triangles(v).empty() || rings_.on_boundary(v) || constraints_.at_corner(v)) return true;
+    if (v < options_.held.size() && options_.held[v] != 0) return true;
+    // Where a curve turns as much as its chords may, they must not become longer.
+    constexpr double tight = 0.5;
+    return constraints_.vertex(v) && constraints_.chordal_deviation(mesh_, v, rings_.neighbours(v)) >
+                                         tight * constraints_.max_chordal_deviation;
   }
   template <typename Op>
   void each_vertex(const Op& op) const {
@@ -147,7 +154,7 @@ class Smoothing {
       Vec3& p = mesh_.vertices[v];
       if (!stays(v))
         p = constraints_.vertex(v) ? constraints_.slide(v, p)
-            : projector_           ? projector_->project(p, projection_limit * rings_.edge_length(v))
+            : projector_           ? projector_->project(p, projection_limit * edge_[v])
                                    : p;
       base_[v] = p;
       at_[v] = {};
@@ -299,6 +306,7 @@ class Smoothing {
   LimitedMemoryHessian<Tangential> history_{algebra_};
   ShapeSmoothingResult result_;
   double energy_ = 0;
+  std::vector<char> stays_;
   std::vector<Vec3> base_;  ///< by vertex: the origin of its tangential coordinates
   std::vector<Frame> frames_;
   Coordinates at_, trial_, gradient_, trial_gradient_;
