@@ -24,7 +24,7 @@ void make_vertices(const Tessellation& cells, const std::vector<Triangle>& trian
     if (index[l] == Draft::none) continue;
     index[l] = static_cast<std::uint32_t>(draft.mesh.vertices.size());
     draft.planes.push_back({cells.seeds.positions[l], shapes[l].planes});
-    draft.mesh.vertices.push_back(cells.seeds_are_vertices                     ? cells.seeds.positions[l]
+    draft.mesh.vertices.push_back(cells.seeds_are_vertices                  ? cells.seeds.positions[l]
                                   : options.placement == Placement::quadric ? shapes[l].vertex
                                                                             : shapes[l].centroid);
   }

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <ctime>
 
 #include "geometry/single_precision.h"
 #include "refine/fit.h"
@@ -52,31 +49,21 @@ class Refinement {
       const std::size_t pairs = intersections(mesh).size();
       return {moved_back(std::move(mesh)), pairs};
     }
-    dbg("extracted");
     flip_to_delaunay(mesh, constraints, context_);
     const std::vector<Vec3> before = mesh.vertices;
     smooth_shapes(mesh, projector_.get(), draft_.sizing,
                   {.size_weight = size_weight_of(options_.evenness), .planes = draft_.planes}, context_, constraints);
-    dbg("smoothed");
     undo_intersections(mesh, before, [&](const Mesh& m) { return intersections(m); });
-    dbg("undone");
     flip_to_delaunay(mesh, constraints, context_);
-    dbg("flipped");
     polish(mesh, projector_.get(), context_, constraints);
     flip_to_delaunay(mesh, constraints, context_);
-    dbg("smoothed, polished");
     release_features();
     if (options_.placement == Placement::quadric) fit();
-    dbg("fitted");
     finish_projection();
     if (!constraints.curve.empty())
       for (const auto& [s, t] : intersections(mesh)) constraints.release(mesh, std::array{s, t});
-    for (const auto& [a, b] : intersections(mesh))
-      std::fprintf(stderr, "dbg intersect %u %u at %g %g %g\n", a, b, mesh.vertices[mesh.triangles[a][0]].x,
-                   mesh.vertices[mesh.triangles[a][0]].y, mesh.vertices[mesh.triangles[a][0]].z);
     const auto find = [&](const Mesh& m) { return intersections(m); };
     const std::size_t left = untangle(mesh, projector_.get(), find, context_, constraints);
-    dbg("untangled");
     return {moved_back(std::move(mesh)), left};
   }
 
@@ -95,21 +82,6 @@ class Refinement {
     return self_intersections(mesh, context_);
   }
 
-  static double env(const char* n, double d) {
-    const char* e = std::getenv(n);
-    return e ? std::atof(e) : d;
-  }
-  static double cpu() {
-    timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return t.tv_sec + 1e-9 * t.tv_nsec;
-  }
-  void dbg(const char* what) {
-    const auto q = measure_quality(draft_.mesh, context_);
-    std::fprintf(stderr, "dbg %s Q %.4f min %.3f irr %.4f ecv %.4f cpu %.3f\n", what, q.q_avg, q.q_min,
-                 q.irregular_ratio, q.edge_length_cv, cpu());
-    for (const auto& [a, b] : intersections(draft_.mesh)) std::fprintf(stderr, "   dbg intersect %u %u\n", a, b);
-  }
   /// Where curves are so near to each other, or meet at so acute an angle, that triangles between them are slivers,
   /// regular triangles come first.
   void release_features() {

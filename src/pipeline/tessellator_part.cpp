@@ -73,8 +73,8 @@ void Tessellator::relax_around(std::span<const Vec3> places, std::size_t evaluat
     const double share = static_cast<double>(members.size()) / static_cast<double>(result.seeds.size());
     part.total_area *= share;
     part.total_weight *= share;
-    const auto cells = kernels_.cells ? kernels_.cells->evaluator(part, context)
-                                      : std::make_unique<CpuCellEvaluator>(part, context);
+    const auto cells =
+        kernels_.cells ? kernels_.cells->evaluator(part, context) : std::make_unique<CpuCellEvaluator>(part, context);
     optimize(*cells, seeds, {options.optimizer == Optimizer::lloyd, evaluations, options.tolerance, frozen}, context);
     for (std::size_t i = 0; i < members.size(); ++i) result.seeds.positions[members[i]] = seeds.positions[i];
   });
