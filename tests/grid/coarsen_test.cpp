@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "geometry/primitives.h"
 #include "grid/sample_checks.h"
 #include "sample/sample.h"
@@ -46,10 +48,27 @@ TEST(Coarsen, SamplesStayWhereTheyWere) {
   }
 }
 
+TEST(Coarsen, OnEveryEdgeAtMostOneStays) {
+  const SampleSet solid = one_sample_per_edge(coarsen(coarsen(sampled(make_torus(1, 0.35, 96, 48), 160))));
+  EXPECT_NEAR(solid.total_area, 4 * std::numbers::pi * std::numbers::pi * 0.35, 0.05 * solid.total_area);
+  for (const SampleBlock& b : solid.blocks)
+    for (std::size_t i = b.begin; i + 1 < b.end; ++i) EXPECT_LT(solid.edge[i].bits >> 1, solid.edge[i + 1].bits >> 1);
+}
+
+TEST(Coarsen, WhatIsThinnerThanACellGoes) {
+  const Mesh plate = make_box({1, 1, 0.01});
+  const SampleSet fine = sampled(plate, 300);
+  SampleSet coarse = fine;
+  for (int level = 0; level < 3; ++level) coarse = coarsen(coarse);
+  EXPECT_GT(coarse.total_area, 0.9 * fine.total_area);
+  EXPECT_LT(one_sample_per_edge(coarse).total_area, 0.1 * fine.total_area);
+}
+
 TEST(Coarsen, ThreadsDoNotMatter) {
   const SampleSet fine = sampled(make_icosphere(3), 90);
   evenmesh::ExecutionContext one(1), two(2);
   expect_same(coarsen(fine, one), coarsen(fine, two));
+  expect_same(one_sample_per_edge(coarsen(fine), one), one_sample_per_edge(coarsen(fine), two));
 }
 
 }  // namespace
