@@ -26,7 +26,7 @@ struct Evenness {
 
 struct SmoothedSphere {
   explicit SmoothedSphere(const ShapeSmoothingOptions& options, unsigned threads = 2,
-                          Mesh start = perturbed_sphere(4, 0.02, 3))
+                          Mesh start = perturbed_sphere(4, 0.012, 3))
       : mesh(std::move(start)) {
     ExecutionContext context(threads);
     const Shape shape = gallery_shape("sphere");
@@ -38,7 +38,7 @@ struct SmoothedSphere {
 };
 
 TEST(ShapeSmoothing, MakesTrianglesMoreEquilateralOnTheSurface) {
-  const Mesh before = perturbed_sphere(4, 0.02, 3);
+  const Mesh before = perturbed_sphere(4, 0.012, 3);
   const SmoothedSphere after({.evaluations = 60});
   EXPECT_LT(after.result.energy, 0.25 * after.result.energy_before);
   EXPECT_LE(after.result.evaluations, 70u);
@@ -69,7 +69,14 @@ TEST(ShapeSmoothing, WhatIsHeldStays) {
   std::vector<char> held(before.vertices.size(), 0);
   for (std::size_t v = 0; v < held.size(); v += 3) held[v] = 1;
   const SmoothedSphere after({.held = held}, 2, before);
-  for (std::size_t v = 0; v < held.size(); ++v) EXPECT_EQ(after.mesh.vertices[v] == before.vertices[v], held[v] != 0);
+  std::size_t moved = 0;
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    if (held[v]) {
+      EXPECT_EQ(after.mesh.vertices[v], before.vertices[v]);
+    }
+    moved += after.mesh.vertices[v] != before.vertices[v];
+  }
+  EXPECT_GT(moved, held.size() / 2);
 }
 
 TEST(ShapeSmoothing, BoundariesAndDegenerateTrianglesDoNotMove) {
