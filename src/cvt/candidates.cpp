@@ -1,5 +1,7 @@
 #include "cvt/candidates.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -75,8 +77,6 @@ class SeedGrid {
   std::vector<Vec3> position_;
 };
 
-namespace {
-
 /// The seeds around a chunk of blocks, and those of them that matter to one block.
 class ChunkSeeds {
  public:
@@ -147,8 +147,6 @@ class ChunkSeeds {
   Vec3 origin_;
   std::vector<float> near_x_, near_y_, near_z_, near_margin_, scratch_, x_, y_, z_, margin_;
 };
-
-}  // namespace
 
 namespace {
 
@@ -234,6 +232,10 @@ std::vector<std::uint32_t> CandidateLists::strayed_seeds(std::span<const Vec3> s
   return strayed;
 }
 
+ChunkSeeds CandidateLists::seeds_near(const SeedGrid& grid) const {
+  return {grid, seeds_at_build_, margins_, largest_margin_};
+}
+
 void CandidateLists::build_all(std::span<const Vec3> seeds, double spacing, const ExecutionContext& context) {
   margins_.resize(seeds.size());
   parallel_for(context, seeds.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
@@ -242,10 +244,11 @@ void CandidateLists::build_all(std::span<const Vec3> seeds, double spacing, cons
   largest_margin_ = *std::max_element(margins_.begin(), margins_.end());
   seeds_at_build_.assign(seeds.begin(), seeds.end());
   const SeedGrid grid(seeds_at_build_, spacing, context);
+  tbb::enumerable_thread_specific<ChunkSeeds> near([&] { return seeds_near(grid); });
   parallel_tasks(context, chunks_.size(), [&](std::size_t c) {
     std::array<bool, chunk> all;
     all.fill(true);
-    build_chunk(c, all, grid, spacing);
+    build_chunk(c, all, near.local(), spacing);
   });
 }
 
@@ -261,6 +264,7 @@ void CandidateLists::build_around(std::span<const std::uint32_t> strayed, std::s
     seeds_at_build_[i] = seeds[i];
   }
   const SeedGrid grid(seeds_at_build_, spacing, context), changed(places, spacing, context);
+  tbb::enumerable_thread_specific<ChunkSeeds> near([&] { return seeds_near(grid); });
   parallel_tasks(context, chunks_.size(), [&](std::size_t c) {
     const std::size_t first = c * chunk, count = end_of_chunk(c) - first;
     std::array<bool, chunk> stale{};
@@ -273,12 +277,12 @@ void CandidateLists::build_around(std::span<const std::uint32_t> strayed, std::s
       for (std::size_t b = 0; b < count; ++b)
         if (squared_norm(p - centers[b]) <= double(reach_[first + b]) * reach_[first + b]) stale[b] = any = true;
     });
-    if (any) build_chunk(c, stale, grid, spacing);
+    if (any) build_chunk(c, stale, near.local(), spacing);
   });
 }
 
 /// The lists of those blocks of a chunk that are stale.
-void CandidateLists::build_chunk(std::size_t c, const std::array<bool, chunk>& stale, const SeedGrid& grid,
+void CandidateLists::build_chunk(std::size_t c, const std::array<bool, chunk>& stale, ChunkSeeds& near,
                                  double spacing) {
   const std::size_t first = c * chunk, last = end_of_chunk(c);
   Box centers;
@@ -288,7 +292,6 @@ void CandidateLists::build_chunk(std::size_t c, const std::array<bool, chunk>& s
     centers.add(center(b));
     radius = std::max(radius, norm({boxes_[b].half[0], boxes_[b].half[1], boxes_[b].half[2]}));
   }
-  ChunkSeeds near(grid, seeds_at_build_, margins_, largest_margin_);
   near.collect(centers, 1.2 * spacing + 2 * radius + 2 * static_cast<double>(largest_margin_));
   std::vector<std::uint32_t> list;
   Box region;

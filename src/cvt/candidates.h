@@ -15,6 +15,7 @@ namespace evenmesh {
 
 std::vector<BlockBox> block_boxes(const SampleSet& samples, const ExecutionContext& context);
 
+class ChunkSeeds;
 class SeedGrid;
 
 /// Candidate lists, kept while seeds move little.
@@ -56,7 +57,8 @@ class CandidateLists {
   void build_all(std::span<const Vec3> seeds, double spacing, const ExecutionContext& context);
   void build_around(std::span<const std::uint32_t> strayed, std::span<const Vec3> seeds, double spacing,
                     const ExecutionContext& context);
-  void build_chunk(std::size_t c, const std::array<bool, chunk>& stale, const SeedGrid& grid, double spacing);
+  void build_chunk(std::size_t c, const std::array<bool, chunk>& stale, ChunkSeeds& near, double spacing);
+  ChunkSeeds seeds_near(const SeedGrid& grid) const;
   std::size_t end_of_chunk(std::size_t c) const { return std::min((c + 1) * chunk, boxes_.size()); }
   Vec3 center(std::size_t b) const {
     const BlockBox& box = boxes_[b];

@@ -164,6 +164,36 @@ double evaluate_block(const BlockView& b, float* lane_sums, const BlockSums& sum
   return sum_lanes(energy);
 }
 
+/// The nearest few, in order but for ties. Of distances the last bits make room for the index.
+/// @param distance2  readable up to a multiple of eight
+/// @return  how many
+HWY_INLINE std::size_t find_nearest(const float* distance2, std::size_t count, std::size_t* nearest, std::size_t most) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  constexpr std::int32_t index_bits = max_candidates - 1, none = 0x7fffffff;
+  const std::size_t lanes = hn::Lanes(d);
+  HWY_ALIGN std::int32_t key[max_candidates];
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const auto bits = hn::AndNot(hn::Set(di, index_bits), hn::BitCast(di, hn::Load(d, distance2 + i)));
+    const auto with_index = hn::Or(bits, hn::Iota(di, static_cast<std::int32_t>(i)));
+    hn::Store(count - i < lanes ? hn::IfThenElse(hn::FirstN(di, count - i), with_index, hn::Set(di, none)) : with_index,
+              di, key + i);
+  }
+  std::int32_t last = -1;
+  for (std::size_t n = 0; n < most; ++n) {
+    auto least = hn::Set(di, none);
+    const auto passed = hn::Set(di, last);
+    for (std::size_t i = 0; i < count; i += lanes) {
+      const auto k = hn::Load(di, key + i);
+      least = hn::IfThenElse(hn::Gt(k, passed), hn::Min(least, k), least);
+    }
+    last = hn::GetLane(hn::MinOfLanes(di, least));
+    if (last == none) return n;
+    nearest[n] = static_cast<std::size_t>(last & index_bits);
+  }
+  return most;
+}
+
 std::size_t keep_near_seeds(const BlockBox& box, const float* margin, float* x, float* y, float* z, std::uint32_t* seed,
                             std::size_t count) {
   constexpr std::size_t judges = 4;
@@ -178,15 +208,9 @@ std::size_t keep_near_seeds(const BlockBox& box, const float* margin, float* x, 
     hn::Store(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), d, distance2 + i);
     hn::Store(hn::Zero(d), d, dominated + i);
   }
-  // The nearest few to the centre, in order; they judge the others.
-  std::size_t judge[judges + 1], judge_count = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (judge_count == judges && distance2[i] >= distance2[judge[judges - 1]]) continue;
-    std::size_t at = judge_count;
-    for (; at > 0 && distance2[i] < distance2[judge[at - 1]]; --at) judge[at] = judge[at - 1];
-    judge[at] = i;
-    judge_count = judge_count < judges ? judge_count + 1 : judges;
-  }
+  // The nearest few to the centre judge the others.
+  std::size_t judge[judges];
+  const std::size_t judge_count = find_nearest(distance2, count, judge, judges);
   // Moves change each distance by up to its margin, so the difference of their squares by the margins' sum times their
   // own.
   const float *half = box.half,

@@ -20,12 +20,6 @@ struct Tile {
   std::uint64_t key = 0;              ///< the other bits of the code
   std::uint64_t there = 0, left = 0;  ///< by the lowest bits: whether there is a block, whether it was left out
   std::uint32_t first = 0;            ///< its first block
-
-  std::int32_t block(unsigned brick) const {
-    const std::uint64_t bit = std::uint64_t{1} << brick;
-    if (there & bit) return static_cast<std::int32_t>(first) + std::popcount(there & (bit - 1));
-    return left & bit ? left_out : none;
-  }
 };
 
 /// Ascending.
@@ -52,30 +46,41 @@ std::vector<Tile> tiles_of(const SampleSet& samples) {
   return tiles;
 }
 
-/// The blocks of a tile and of those around it.
+/// The blocks of a tile and of the layer of bricks around it.
 class Neighbourhood {
  public:
   Neighbourhood(const std::vector<Tile>& tiles, const Tile& middle) {
+    block_.fill(none);
     const auto at = morton_decode(middle.key);
     for (int n = 0; n < 27; ++n) {
-      const int x = at[0] + n % 3 - 1, y = at[1] + n / 3 % 3 - 1, z = at[2] + n / 9 - 1;
-      if (std::min({x, y, z}) < 0) continue;
-      const std::uint64_t key = morton_code(std::uint64_t(x), std::uint64_t(y), std::uint64_t(z));
+      const int dx = n % 3 - 1, dy = n / 3 % 3 - 1, dz = n / 9 - 1;
+      if (std::min({at[0] + dx, at[1] + dy, at[2] + dz}) < 0) continue;
+      const std::uint64_t key =
+          morton_code(std::uint64_t(at[0] + dx), std::uint64_t(at[1] + dy), std::uint64_t(at[2] + dz));
       const auto found =
           std::lower_bound(tiles.begin(), tiles.end(), key, [](const Tile& t, std::uint64_t k) { return t.key < k; });
-      if (found != tiles.end() && found->key == key) tile_[n] = &*found;
+      if (found != tiles.end() && found->key == key) add(*found, {dx * Tile::side, dy * Tile::side, dz * Tile::side});
     }
   }
   /// @param x, y, z  brick from the tile's first, −1 … 4
-  std::int32_t block(int x, int y, int z) const {
-    const auto tile = [](int v) { return (v + Tile::side) / Tile::side; };
-    const auto spread = [](int v) { return static_cast<unsigned>((v & 1) | (v & 2) << 2); };
-    const Tile* found = tile_[tile(x) + 3 * tile(y) + 9 * tile(z)];
-    return found == nullptr ? none : found->block(spread(x) | spread(y) << 1 | spread(z) << 2);
-  }
+  std::int32_t block(int x, int y, int z) const { return block_[index(x, y, z)]; }
 
  private:
-  std::array<const Tile*, 27> tile_{};  ///< [x + 3·y + 9·z], the tile itself in the middle
+  static constexpr int side = Tile::side + 2;
+  static std::size_t index(int x, int y, int z) {
+    return static_cast<std::size_t>(x + 1 + side * (y + 1 + side * (z + 1)));
+  }
+  void add(const Tile& tile, const std::array<int, 3>& from) {
+    auto next = static_cast<std::int32_t>(tile.first);
+    for (std::uint64_t rest = tile.there | tile.left; rest != 0; rest &= rest - 1) {
+      const int bit = std::countr_zero(rest);
+      const std::int32_t found = tile.there >> bit & 1 ? next++ : left_out;
+      const auto coordinate = [&](int a) { return from[a] + ((bit >> a & 1) | (bit >> (a + 2) & 2)); };
+      const int x = coordinate(0), y = coordinate(1), z = coordinate(2);
+      if (std::min({x, y, z}) >= -1 && std::max({x, y, z}) <= Tile::side) block_[index(x, y, z)] = found;
+    }
+  }
+  std::array<std::int32_t, side * side * side> block_;
 };
 
 /// The bricks around block b that come with it: its own, and those without samples whose first block it is.
