@@ -196,12 +196,13 @@ bool DislocationMoves::stays_near(double tolerance) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
   };
-  std::vector<std::uint32_t> before(patch_.triangles().begin(), patch_.triangles().end()), changed;
-  before.insert(before.end(), gone_.begin(), gone_.end());
+  std::vector<std::uint32_t> now(patch_.triangles().begin(), patch_.triangles().end()), before = gone_, changed;
+  before.insert(before.end(), now.begin(), now.end());
   for (const std::uint32_t v : touched_) mesh_.around(v, [&](std::uint32_t h) { changed.push_back(h / 3); });
   sort(before);
+  sort(now);
   sort(changed);
-  if (points_.hand_over(mesh_, before, patch_.triangles(), changed, tolerance)) return true;
+  if (points_.hand_over(mesh_, before, now, changed, tolerance)) return true;
   ++counts.off_surface;
   return false;
 }

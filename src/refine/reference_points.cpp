@@ -55,16 +55,23 @@ void ReferencePoints::add(const Vec3& p, const Vec3& normal, double squared_dist
   squared_distance_.push_back(squared_distance);
 }
 
-ReferencePoints::Nearest ReferencePoints::nearest(std::uint32_t point, std::span<const Corners> candidates) const {
+ReferencePoints::Nearest ReferencePoints::nearest(std::uint32_t point, std::span<const Corners> candidates,
+                                                  std::size_t guess) const {
   const Vec3 &p = points_[point], &normal = normals_[point];
+  const bool any_side = normal == Vec3{};
   Nearest best;
-  for (const Corners& c : candidates) {
-    const double to_middle = squared_norm(p - c.middle), known = best.squared_distance;
-    if (to_middle > known + c.radius * (c.radius + 2 * std::sqrt(known))) continue;
-    if (normal != Vec3{} && !(dot(normal, c.normal) > least_cosine)) continue;
+  double distance = std::numeric_limits<double>::infinity();
+  const auto look_at = [&](const Corners& c) {
+    const double reach = distance + c.radius;
+    if (squared_norm(p - c.middle) > reach * reach) return;
+    if (!any_side && !(dot(normal, c.normal) > least_cosine)) return;
     const double d = squared_norm(closest_point_on_triangle(p, c.a, c.b, c.c) - p);
-    if (d < known) best = {d, c.triangle};
-  }
+    if (d >= best.squared_distance) return;
+    best = {d, c.triangle};
+    distance = std::sqrt(d);
+  };
+  if (guess < candidates.size()) look_at(candidates[guess]);
+  for (const Corners& c : candidates) look_at(c);
   return best;
 }
 
@@ -80,18 +87,21 @@ bool ReferencePoints::hand_over(const EditableMesh& mesh, std::span<const std::u
                                 double tolerance) {
   std::vector<Corners> candidates;
   for (const std::uint32_t t : now) candidates.emplace_back(mesh, t);
-  std::vector<std::uint32_t> points;
+  const auto candidate = [&](std::uint32_t t) {
+    const auto at = std::lower_bound(now.begin(), now.end(), t);
+    return static_cast<std::size_t>(at != now.end() && *at == t ? at - now.begin() : 0);
+  };
   double most = tolerance * tolerance;
+  for (const std::uint32_t t : before)
+    for (std::uint32_t i = first_[t]; i != none; i = next_[i]) most = std::max(most, squared_distance_[i]);
+  std::vector<std::uint32_t> points;
+  std::vector<Nearest> found;
   for (const std::uint32_t t : before)
     for (std::uint32_t i = first_[t]; i != none; i = next_[i]) {
       points.push_back(i);
-      most = std::max(most, squared_distance_[i]);
+      found.push_back(nearest(i, candidates, candidate(t)));
+      if (!(found.back().squared_distance <= most)) return false;
     }
-  std::vector<Nearest> found(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    found[i] = nearest(points[i], candidates);
-    if (!(found[i].squared_distance <= most)) return false;
-  }
   for (const std::uint32_t t : changed)
     if (!near_surface(mesh, t, most)) return false;
   for (const std::uint32_t t : before) first_[t] = none;

@@ -19,7 +19,8 @@ class ReferencePoints {
 
   /// Whether the points of the triangles `before` lie near those of the triangles `now` that face the same way, and the
   /// middles of the triangles `changed` near the surface: within `tolerance`, or no farther than the farthest of the
-  /// points did. If so they belong to those from now on. Triangles not in use may be among `before`.
+  /// points did. If so they belong to those from now on. `now` is
+  /// ascending; triangles not in use may be among `before`.
   /// Cost: points times triangles, some nanoseconds each, and a projection for each triangle changed.
   bool hand_over(const EditableMesh& mesh, std::span<const std::uint32_t> before, std::span<const std::uint32_t> now,
                  std::span<const std::uint32_t> changed, double tolerance);
@@ -30,7 +31,8 @@ class ReferencePoints {
     double squared_distance = std::numeric_limits<double>::infinity();
     std::uint32_t triangle = EditableMesh::none;
   };
-  Nearest nearest(std::uint32_t point, std::span<const Corners> candidates) const;
+  /// @param guess  a candidate that is likely to be near
+  Nearest nearest(std::uint32_t point, std::span<const Corners> candidates, std::size_t guess) const;
   bool near_surface(const EditableMesh& mesh, std::uint32_t triangle, double squared_distance) const;
   void add(const Vec3& p, const Vec3& normal, double squared_distance, std::uint32_t triangle);
 
