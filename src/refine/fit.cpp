@@ -59,12 +59,18 @@ class Fit {
   std::size_t max_attempts() const { return 500 + mesh_.vertices.size() / 20; }
   std::size_t max_extremes() const { return 20 + mesh_.vertices.size() / 200; }
 
-  /// By some samples everywhere, then by all where it is far.
+  /// By some samples everywhere, then by all where it is far, and beside that.
   void measure() {
     deviations_.update(gaps_, cells_, context_);
-    const std::vector<std::uint32_t> far = deviations_.largest_first(0);
-    cells_.take_all_of(far);
-    for (const std::uint32_t v : far) deviations_.mark(v);
+    std::vector<std::uint32_t> near;
+    for (const std::uint32_t v : deviations_.largest_first(0)) {
+      near.push_back(v);
+      near.insert(near.end(), rings_->neighbours(v).begin(), rings_->neighbours(v).end());
+    }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    cells_.take_all_of(near);
+    for (const std::uint32_t v : near) deviations_.mark(v);
     deviations_.update(gaps_, cells_, context_);
   }
 

@@ -5,6 +5,7 @@
 
 #include "geometry/triangle.h"
 #include "refine/give_way.h"
+#include "refine/piercing.h"
 
 namespace evenmesh {
 namespace {
@@ -169,7 +170,7 @@ void FitAttempt::surround(const VertexRings& rings, std::span<const std::uint32_
 }
 
 bool FitAttempt::keep_or_undo(const VertexRings& rings) {
-  if (triangles_are_good(rings) && is_better(rings)) {
+  if (triangles_are_good(rings) && is_better(rings) && !intersects(rings)) {
     write_back(rings);
     return true;
   }
@@ -221,6 +222,16 @@ bool FitAttempt::is_better(const VertexRings& rings) {
     if (measured_.back().second > largest) return false;
   }
   return true;
+}
+
+/// Whether triangles intersect that did not: the two sides of a thin part are near each other.
+bool FitAttempt::intersects(const VertexRings& rings) const {
+  std::vector<std::uint32_t> changed;
+  for (const std::uint32_t w : region_)
+    if (has_moved(w)) changed.insert(changed.end(), rings.triangles(w).begin(), rings.triangles(w).end());
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  return any_pierces(mesh_, changed) && !any_pierces(original_, changed);
 }
 
 void FitAttempt::write_back(const VertexRings& rings) {

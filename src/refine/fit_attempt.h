@@ -58,6 +58,7 @@ class FitAttempt {
   double largest_before() const;
   bool has_moved(std::uint32_t v) const;
   bool is_better(const VertexRings& rings);
+  bool intersects(const VertexRings& rings) const;
   void write_back(const VertexRings& rings);
   std::vector<Quad> quads() const;
   std::optional<Quad> quad(std::uint32_t a, std::uint32_t b) const;
