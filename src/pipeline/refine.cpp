@@ -104,7 +104,8 @@ class Refinement {
     for (std::size_t i = 0; i < vertex_of_sample.size(); ++i)
       vertex_of_sample[i] = draft_.vertex_of_label[cells_.labels[i]];
     const double error = cells_.sampling.closed() ? 0 : sheet_error * samples.grid.spacing;
-    fit_extremes(draft_.mesh, samples, vertex_of_sample, projector_.get(), error, context_, draft_.constraints);
+    fit_extremes(draft_.mesh, samples, vertex_of_sample, projector_.get(), {.sample_error = error}, context_,
+                 draft_.constraints);
   }
 
   /// What was projected onto the samples only goes the rest of the way.

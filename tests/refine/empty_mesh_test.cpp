@@ -46,9 +46,9 @@ TEST_P(MeshWithoutTriangles, IsNotFitted) {
   for (const std::uint32_t label : {0u, 0xffffffffu}) {
     const std::vector<std::uint32_t> labels(samples.size(), label);
     for (const double error : {0.0, 0.01})
-      EXPECT_EQ(fit_extremes(mesh_, samples, labels, nullptr, error, context_), 0u);
+      EXPECT_EQ(fit_extremes(mesh_, samples, labels, nullptr, {.sample_error = error}, context_).attempts, 0u);
   }
-  EXPECT_EQ(fit_extremes(mesh_, {}, {}, nullptr, 0, context_), 0u);
+  EXPECT_EQ(fit_extremes(mesh_, {}, {}, nullptr, {}, context_).attempts, 0u);
   expect_unchanged();
 }
 
@@ -69,8 +69,8 @@ TEST(FitExtremes, AVertexWithoutTrianglesIsNobodysConcern) {
   std::vector<std::uint32_t> labels = cells.labels;
   labels[0] = static_cast<std::uint32_t>(cells.mesh.vertices.size());
   cells.labels[0] = 0xffffffffu;
-  EXPECT_EQ(fit_extremes(lonely, cells.samples, labels, nullptr, 0, context),
-            fit_extremes(cells.mesh, cells.samples, cells.labels, nullptr, 0, context));
+  EXPECT_EQ(fit_extremes(lonely, cells.samples, labels, nullptr, {}, context).moves,
+            fit_extremes(cells.mesh, cells.samples, cells.labels, nullptr, {}, context).moves);
   EXPECT_EQ(lonely.vertices.back(), (Vec3{5, 5, 5}));
 }
 

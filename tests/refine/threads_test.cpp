@@ -50,7 +50,7 @@ TEST(Threads, DoNotChangeFits) {
   const CellMesh cells = mesh_of_cells(shape, 60, 300);
   expect_same_for_any_number_of_threads([&](ExecutionContext& context) {
     Mesh mesh = cells.mesh;
-    EXPECT_GT(fit_extremes(mesh, cells.samples, cells.labels, projector.get(), 0, context), 0u);
+    EXPECT_GT(fit_extremes(mesh, cells.samples, cells.labels, projector.get(), {}, context).moves, 0u);
     return mesh;
   });
 }
