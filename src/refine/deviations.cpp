@@ -8,9 +8,8 @@
 namespace evenmesh {
 namespace {
 
-constexpr double worth_measuring = 0.13;  ///< of the edge length
-constexpr double flat_cosine = 0.93;      ///< of triangles' normals with the vertex': edges are off by less than that
-constexpr std::size_t grain = 256;        ///< vertices of a task
+constexpr double flat_cosine = 0.93;  ///< of triangles' normals with the vertex': edges are off by less than that
+constexpr std::size_t grain = 256;    ///< vertices of a task
 
 }  // namespace
 
@@ -27,7 +26,7 @@ Gap GapFinder::largest(std::uint32_t v, std::span<const Vec3> samples) const {
 
 double GapFinder::deviation(std::uint32_t v, std::span<const Vec3> samples, double squared_limit) const {
   if (rings_.triangles(v).empty()) return 0;
-  const double least = worth_measuring * rings_.edge_length(v);
+  const double least = least_ * rings_.edge_length(v);
   double worst = least * least;
   bool any = false;
   const auto look = [&](const Gap& gap) {

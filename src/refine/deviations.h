@@ -25,12 +25,13 @@ struct Gap {
 class GapFinder {
  public:
   /// @param projector  null: samples alone count
-  GapFinder(const Mesh& mesh, const VertexRings& rings, const Projector* projector)
-      : mesh_(mesh), rings_(rings), projector_(projector) {}
+  /// @param least      deviations below are not worth measuring, in edge lengths
+  GapFinder(const Mesh& mesh, const VertexRings& rings, const Projector* projector, double least)
+      : mesh_(mesh), rings_(rings), projector_(projector), least_(least) {}
 
   Gap largest(std::uint32_t v, std::span<const Vec3> samples) const;
   /// Squared distance of the largest; infinite as soon as one is above `squared_limit`, 0 where all are below
-  /// 0.13 edge lengths.
+  /// the least.
   double deviation(std::uint32_t v, std::span<const Vec3> samples,
                    double squared_limit = std::numeric_limits<double>::infinity()) const;
   /// Whether all samples are nearer than √squared_limit to the triangles around v.
@@ -51,6 +52,7 @@ class GapFinder {
   const Mesh& mesh_;
   const VertexRings& rings_;
   const Projector* projector_;
+  double least_;
 };
 
 /// The deviations of all vertices of a mesh.
@@ -58,7 +60,7 @@ class Deviations {
  public:
   explicit Deviations(std::size_t vertices) : squared_(vertices, 0), marked_(vertices, 1), hopeless_(vertices, 0) {}
 
-  /// Squared, model units; 0 where it is below 0.13 edge lengths and nobody asks how large.
+  /// Squared, model units; 0 where nobody asks how large.
   double operator[](std::uint32_t v) const { return squared_[v]; }
   double largest() const;
   /// Then there is hope for v again.
@@ -67,6 +69,7 @@ class Deviations {
     hopeless_[v] = 0;
   }
   void mark(std::uint32_t v) { marked_[v] = 1; }
+  void mark_all() { marked_.assign(marked_.size(), 1); }
   /// That nothing can be done about v, until it is measured again.
   void give_up(std::uint32_t v) { hopeless_[v] = 1; }
   /// Measures the vertices that are marked; all of them at first.

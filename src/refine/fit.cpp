@@ -13,7 +13,9 @@
 namespace evenmesh {
 namespace {
 
-constexpr double among_the_worst = 0.9;  ///< of the largest deviation: what a round looks at
+constexpr double among_the_worst = 0.9;          ///< of the largest deviation: what a round looks at
+constexpr double least_deviation = 0.13;         ///< worth looking at, edge lengths
+constexpr double least_deviation_of_few = 0.08;  ///< where that concerns hardly anybody
 constexpr int max_rounds = 40;
 constexpr int max_rounds_inexact = 4;  ///< on samples off the surface: later rounds only cost quality
 constexpr int max_perturbations = 4;   ///< rounds around the worst where nothing helps there
@@ -28,9 +30,9 @@ class Fit {
         rings_(std::in_place, mesh, context),
         cells_(samples, vertex_of_sample, mesh, *rings_, options.sample_error > 0 ? projector : nullptr,
                options.sample_error, context),
-        gaps_(mesh, *rings_, projector),
+        gaps_(std::in_place, mesh, *rings_, projector, least_deviation),
         deviations_(mesh.vertices.size()),
-        state_{mesh, *rings_, cells_, projector, constraints, deviations_},
+        state_{mesh, *rings_, cells_, projector, constraints, deviations_, least_deviation},
         taken_(mesh.vertices.size()) {}
 
   FitResult run() {
@@ -45,7 +47,7 @@ class Fit {
           perturb ? around_the_stuck(perturbations) : deviations_.largest_first(among_the_worst);
       if (!perturb && list.size() > max_extremes()) break;
       const bool moved = try_all(std::move(list));
-      deviations_.update(gaps_, cells_, context_);
+      deviations_.update(*gaps_, cells_, context_);
       if (!moved && perturbations == max_perturbations) break;
       perturb = !moved;
       perturbations += perturb;
@@ -61,7 +63,13 @@ class Fit {
 
   /// By some samples everywhere, then by all where it is far, and beside that.
   void measure() {
-    deviations_.update(gaps_, cells_, context_);
+    deviations_.update(*gaps_, cells_, context_);
+    if (deviations_.largest_first(0).size() < mesh_.vertices.size() / 1000) {
+      state_.least_deviation = least_deviation_of_few;
+      gaps_.emplace(mesh_, *rings_, state_.projector, least_deviation_of_few);
+      deviations_.mark_all();
+      deviations_.update(*gaps_, cells_, context_);
+    }
     std::vector<std::uint32_t> near;
     for (const std::uint32_t v : deviations_.largest_first(0)) {
       near.push_back(v);
@@ -71,7 +79,7 @@ class Fit {
     near.erase(std::unique(near.begin(), near.end()), near.end());
     cells_.take_all_of(near);
     for (const std::uint32_t v : near) deviations_.mark(v);
-    deviations_.update(gaps_, cells_, context_);
+    deviations_.update(*gaps_, cells_, context_);
   }
 
   std::vector<std::uint32_t> around_the_stuck(int perturbation) {
@@ -125,7 +133,7 @@ class Fit {
   ExecutionContext& context_;
   std::optional<VertexRings> rings_;  ///< made again, in place, when edges were flipped
   CellSamples cells_;
-  GapFinder gaps_;
+  std::optional<GapFinder> gaps_;
   Deviations deviations_;
   FitState state_;
   std::vector<char> taken_;  ///< by vertex: by attempts of the group

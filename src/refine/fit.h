@@ -19,7 +19,7 @@ struct FitOptions {
 
 struct FitResult {
   std::size_t attempts = 0, moves = 0, flips = 0;  ///< places tried, those that came nearer, and those by a flip
-  double deviation_before = 0, deviation = 0;      ///< the largest, model units; 0: below 0.13 edges everywhere
+  double deviation_before = 0, deviation = 0;      ///< the largest, model units; 0: below 0.08 edges everywhere
 };
 
 /// Lowers the largest distances between the surface and the mesh, either way: samples that lie far from the triangles

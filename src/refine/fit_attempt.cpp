@@ -95,7 +95,7 @@ bool FitAttempt::flip() {
   for (const Quad& q : quads()) {
     flip(q);
     const VertexRings rings(mesh_);
-    candidates.push_back({GapFinder(mesh_, rings, nullptr).largest(0, samples(0)).squared_distance, q});
+    candidates.push_back({GapFinder(mesh_, rings, nullptr, 0).largest(0, samples(0)).squared_distance, q});
     mesh_.triangles = original_.triangles;
   }
   std::stable_sort(candidates.begin(), candidates.end(),

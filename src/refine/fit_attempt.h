@@ -20,6 +20,7 @@ struct FitState {
   const Projector* projector;
   const VertexConstraints& constraints;
   Deviations& deviations;
+  double least_deviation;  ///< worth measuring, edge lengths
 };
 
 /// Works on a copy of the surroundings of one vertex, and writes them back when they have become better: its deviation
@@ -48,7 +49,7 @@ class FitAttempt {
 
   Mesh patch();
   std::span<const Vec3> samples(std::uint32_t v) const { return state_.cells.of(vertices_[v]); }
-  GapFinder gaps(const VertexRings& rings) const { return {mesh_, rings, state_.projector}; }
+  GapFinder gaps(const VertexRings& rings) const { return {mesh_, rings, state_.projector, state_.least_deviation}; }
   bool is_movable(std::uint32_t v) const;
   bool pull_one(const VertexRings& rings, std::span<const double> shares);
   bool pull(const VertexRings& rings, std::uint32_t mover, const Vec3& target);
