@@ -1,6 +1,7 @@
 #include "features/apexes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -50,6 +51,17 @@ class TipFinder {
            squares < max_residual * max_residual * edge_ * edge_ * count;
   }
 
+  /// Whether some sample of a brick may be nearer to p.
+  bool reaches(const Vec3& p, const std::array<std::int64_t, 3>& brick, double reach) const {
+    double squares = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double h = samples_.grid.spacing, lo = samples_.grid.origin[a] + h * (8.0 * double(brick[a]) - 0.1);
+      const double off = std::max({lo - p[a], p[a] - lo - 8.2 * h, 0.0});
+      squares += off * off;
+    }
+    return squares < reach * reach;
+  }
+
   /// Calls visit(place, normal) for the samples nearer to p than `around`.
   template <typename Visit>
   void each_around(const Vec3& p, const Visit& visit) const {
@@ -64,6 +76,7 @@ class TipFinder {
     for (std::int64_t k = lo[2]; k <= hi[2]; ++k)
       for (std::int64_t j = lo[1]; j <= hi[1]; ++j)
         for (std::int64_t i = lo[0]; i <= hi[0]; ++i) {
+          if (!reaches(p, {i, j, k}, reach)) continue;
           const std::uint64_t code = morton_code(std::uint64_t(i), std::uint64_t(j), std::uint64_t(k));
           const auto block = std::lower_bound(samples_.blocks.begin(), samples_.blocks.end(), code,
                                               [](const SampleBlock& b, std::uint64_t c) {
@@ -71,12 +84,29 @@ class TipFinder {
                                               });
           if (block == samples_.blocks.end() || morton_code(block->brick[0], block->brick[1], block->brick[2]) != code)
             continue;
-          const Vec3 center = samples_.block_center(*block);
-          for (std::uint32_t s = block->begin; s < block->end; ++s) {
-            const Vec3 x = center + Vec3{samples_.x[s], samples_.y[s], samples_.z[s]};
-            if (squared_norm(x - p) < reach * reach) visit(x, unpack_normal(samples_.normal[s]));
-          }
+          visit_block(*block, p, reach, visit);
         }
+  }
+
+  /// Most are too far, which single precision is enough to tell.
+  template <typename Visit>
+  void visit_block(const SampleBlock& block, const Vec3& p, double reach, const Visit& visit) const {
+    constexpr std::uint32_t batch = 64;
+    const Vec3 center = samples_.block_center(block), from = p - center;
+    const float px = static_cast<float>(from.x), py = static_cast<float>(from.y), pz = static_cast<float>(from.z);
+    const auto limit = static_cast<float>(1.001 * reach * reach);
+    for (std::uint32_t begin = block.begin; begin < block.end; begin += batch) {
+      const std::uint32_t count = std::min(batch, block.end - begin);
+      const float *x = &samples_.x[begin], *y = &samples_.y[begin], *z = &samples_.z[begin];
+      std::array<float, batch> far;
+      for (std::uint32_t s = 0; s < count; ++s)
+        far[s] = (x[s] - px) * (x[s] - px) + (y[s] - py) * (y[s] - py) + (z[s] - pz) * (z[s] - pz);
+      for (std::uint32_t s = 0; s < count; ++s) {
+        if (far[s] > limit) continue;
+        const Vec3 place = center + Vec3{x[s], y[s], z[s]};
+        if (squared_norm(place - p) < reach * reach) visit(place, unpack_normal(samples_.normal[begin + s]));
+      }
+    }
   }
 
   const SampleSet& samples_;
