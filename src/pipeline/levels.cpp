@@ -21,8 +21,9 @@ constexpr double samples_per_seed = 80;  ///< wanted on every level
 constexpr double shortest_curve = 0.7;   ///< that a level follows, in edges
 constexpr double lost_area = 0.03;       ///< share: a grid that loses more of the surface is too coarse
 constexpr double few_defects = 0.01;     ///< by seed: what is worth a repair on a coarse level
+constexpr double finest_effort = 0.7;     ///< of seeds whose connectivity and shapes are improved afterwards
 constexpr double level_size_weight = 0.1;
-constexpr std::size_t base_evaluations = 40, level_evaluations = 12, middle_evaluations = 8;
+constexpr std::size_t base_evaluations = 24, level_evaluations = 12, middle_evaluations = 8;
 constexpr double count_tolerance = 0.001;  ///< of the vertices asked for
 
 class Levels {
@@ -60,7 +61,7 @@ class Levels {
 
   /// Without coarser ones: only the connectivity is made more regular.
   void run_on_finest() {
-    finest_.relax_all(finest_.wanted());
+    finest_.relax_all(finest_.wanted(), finest_effort);
     if (!connected(finest_)) return;
     Draft mesh = regular_mesh(finest_);
     Seeds seeds = finest_.result.feature_seeds.seeds;

@@ -50,10 +50,7 @@ class Refinement {
       return {moved_back(std::move(mesh)), pairs};
     }
     flip_to_delaunay(mesh, constraints, context_);
-    const std::vector<Vec3> before = mesh.vertices;
-    smooth_shapes(mesh, projector_.get(), draft_.sizing,
-                  {.size_weight = size_weight_of(options_.evenness), .planes = draft_.planes}, context_, constraints);
-    undo_intersections(mesh, before, [&](const Mesh& m) { return intersections(m); });
+    smooth();
     flip_to_delaunay(mesh, constraints, context_);
     polish(mesh, projector_.get(), context_, constraints);
     flip_to_delaunay(mesh, constraints, context_);
@@ -80,6 +77,17 @@ class Refinement {
     mesh = moved_back(std::move(mesh));
     if (fits_single_precision(mesh)) mesh.vertices = in_single_precision(mesh.vertices);
     return self_intersections(mesh, context_);
+  }
+
+  void smooth() {
+    constexpr std::size_t evaluations = 20, of_smooth_ones = 10;
+    Mesh& mesh = draft_.mesh;
+    const std::vector<Vec3> before = mesh.vertices;
+    const ShapeSmoothingOptions options{.size_weight = size_weight_of(options_.evenness),
+                                        .evaluations = cells_.seeds_are_vertices ? of_smooth_ones : evaluations,
+                                        .planes = draft_.planes};
+    smooth_shapes(mesh, projector_.get(), draft_.sizing, options, context_, draft_.constraints);
+    undo_intersections(mesh, before, [&](const Mesh& m) { return intersections(m); });
   }
 
   /// Where curves are so near to each other, or meet at so acute an angle, that triangles between them are slivers,

@@ -107,12 +107,12 @@ void Tessellator::keep_long_features(double edge) {
                    {{"count", static_cast<double>(all - result.features.curves.size())}, {"length", length * edge}}));
 }
 
-void Tessellator::relax_all(std::size_t count) {
+void Tessellator::relax_all(std::size_t count, double effort) {
   settled_.clear();
   result.seeds_are_vertices = false;
   timer.stage("relax", closed() ? 0.6 : 0.5, [&] {
     RelaxOptions relax = relax_options(options, result.sampling.hidden_area > 0);
-    if (!closed()) relax.effort *= sheet_effort;
+    relax.effort *= closed() ? effort : sheet_effort;
     if (fixed() > 0)
       relax.fixed = [&](std::size_t seeds) {
         if (2 * seeds > count) return result.feature_seeds.seeds;

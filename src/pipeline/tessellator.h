@@ -19,8 +19,8 @@ class Tessellator {
 
   /// Looks for sharp edges, where seeds are fixed so that the mesh gets an edge there.
   void find_features();
-  /// Spreads `count` seeds from nothing.
-  void relax_all(std::size_t count);
+  /// Spreads `count` seeds from nothing. @param effort  of solids: scales the evaluations
+  void relax_all(std::size_t count, double effort = 1);
   /// A few evaluations for the seeds as they are; of settled seeds, for those around what has changed since.
   /// @param effort  times as many
   void relax(std::size_t effort = 1);
