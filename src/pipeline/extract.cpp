@@ -110,6 +110,13 @@ void constrain_to_apexes(const Tessellation& cells, Draft& draft) {
 
 }  // namespace
 
+std::size_t annealing_work(Quality quality, std::size_t vertices) {
+  constexpr std::size_t vertices_per_work = 15000, most = 10, thorough = 100;
+  if (quality == Quality::fast) return 0;
+  if (quality == Quality::high) return thorough;
+  return std::min(1 + vertices / vertices_per_work, most);
+}
+
 Draft extract(const Tessellation& cells, const MeshOptions& options, ExecutionContext& context) {
   Draft draft;
   std::vector<Triangle> triangles = cells.complex.triangles;

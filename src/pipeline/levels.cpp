@@ -21,7 +21,6 @@ constexpr double samples_per_seed = 80;  ///< wanted on every level
 constexpr double shortest_curve = 0.7;   ///< that a level follows, in edges
 constexpr double lost_area = 0.03;       ///< share: a grid that loses more of the surface is too coarse
 constexpr double few_defects = 0.01;     ///< by seed: what is worth a repair on a coarse level
-constexpr double finest_effort = 0.7;     ///< of seeds whose connectivity and shapes are improved afterwards
 constexpr double level_size_weight = 0.1;
 constexpr std::size_t base_evaluations = 24, level_evaluations = 12, middle_evaluations = 8;
 constexpr double count_tolerance = 0.001;  ///< of the vertices asked for
@@ -31,7 +30,7 @@ class Levels {
   /// @param levels  above the finest
   Levels(Tessellator& finest, std::size_t levels)
       : finest_(finest), context_(finest.context), options_(finest.options), samples_(levels + 1) {
-    const double less = levels > 0 ? count_tolerance * static_cast<double>(finest.wanted()) : 0;
+    const double less = count_tolerance * static_cast<double>(finest.wanted());
     counts_.push_back(finest.wanted() - static_cast<std::size_t>(less));
     for (std::size_t l = 0; l < levels; ++l) counts_.push_back(parent_count(counts_.back(), 2));
   }
@@ -57,19 +56,6 @@ class Levels {
       smooth(mesh, level->result.sampling.samples, level_evaluations);
     }
     return true;
-  }
-
-  /// Without coarser ones: only the connectivity is made more regular.
-  void run_on_finest() {
-    finest_.relax_all(finest_.wanted(), finest_effort);
-    if (!connected(finest_)) return;
-    Draft mesh = regular_mesh(finest_);
-    Seeds seeds = finest_.result.feature_seeds.seeds;
-    append_free(mesh, free_vertices(mesh, finest_), seeds);
-    finest_.result.seeds = std::move(seeds);
-    finest_.result.complex.pieces.clear();
-    finest_.result.seeds_are_vertices = true;
-    finest_.settle();
   }
 
  private:
@@ -165,20 +151,15 @@ class Levels {
   }
   void remove_dislocations(Draft& draft, const SampleSet& samples) const {
     const auto projector = make_projector(samples);
-    const DislocationOptions options{.work = annealing_work(), .size_weight = level_size_weight, .seed = options_.seed};
+    const DislocationOptions options{.work = annealing_work(options_.quality, finest_.wanted()),
+                                     .size_weight = level_size_weight,
+                                     .seed = options_.seed};
     const DislocationResult result =
         evenmesh::remove_dislocations(draft.mesh, projector.get(), draft.sizing, options, context_, draft.constraints);
     draft.planes.clear();
     context_.log(fmt::format("levels: {} irregular vertices of {}, {} after annealing", result.irregular_before,
                              draft.mesh.vertices.size(), result.irregular));
   }
-  /// For a tenth of the time, about.
-  std::size_t annealing_work() const {
-    constexpr std::size_t vertices_per_work = 15000, most = 10, thorough = 100;
-    if (options_.quality == Quality::high) return thorough;
-    return std::min(1 + finest_.wanted() / vertices_per_work, most);
-  }
-
   /// By vertex of the draft's mesh: whether it belongs to no fixed seed.
   static std::vector<char> free_vertices(const Draft& draft, const Tessellator& level) {
     std::vector<char> free(draft.mesh.vertices.size(), 1);
@@ -255,10 +236,7 @@ bool seed_by_levels(Tessellator& state) {
       o.placement != Placement::quadric)
     return false;
   const std::size_t levels = count_levels(state);
-  if (levels == 0) {
-    Levels(state, 0).run_on_finest();
-    return true;
-  }
+  if (levels == 0) return false;
   const FeatureSeeds feature_seeds = state.result.feature_seeds;
   if (Levels(state, levels).run()) return true;
   state.context.log("levels: seeds are spread without");

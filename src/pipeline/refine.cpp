@@ -4,8 +4,10 @@
 #include <array>
 
 #include "geometry/single_precision.h"
+#include "refine/dislocations.h"
 #include "refine/fit.h"
 #include "refine/flips.h"
+#include "refine/placement.h"
 #include "refine/polish.h"
 #include "refine/shape_smoothing.h"
 #include "refine/untangle.h"
@@ -52,6 +54,7 @@ class Refinement {
     flip_to_delaunay(mesh, constraints, context_);
     smooth();
     flip_to_delaunay(mesh, constraints, context_);
+    if (!cells_.seeds_are_vertices) remove_dislocations();
     polish(mesh, projector_.get(), context_, constraints);
     flip_to_delaunay(mesh, constraints, context_);
     release_features();
@@ -81,13 +84,45 @@ class Refinement {
 
   void smooth() {
     constexpr std::size_t evaluations = 20, of_smooth_ones = 10;
+    smooth(cells_.seeds_are_vertices ? of_smooth_ones : evaluations);
+  }
+  void smooth(std::size_t evaluations) {
     Mesh& mesh = draft_.mesh;
     const std::vector<Vec3> before = mesh.vertices;
-    const ShapeSmoothingOptions options{.size_weight = size_weight_of(options_.evenness),
-                                        .evaluations = cells_.seeds_are_vertices ? of_smooth_ones : evaluations,
-                                        .planes = draft_.planes};
+    const ShapeSmoothingOptions options{
+        .size_weight = size_weight_of(options_.evenness), .evaluations = evaluations, .planes = draft_.planes};
     smooth_shapes(mesh, projector_.get(), draft_.sizing, options, context_, draft_.constraints);
     undo_intersections(mesh, before, [&](const Mesh& m) { return intersections(m); });
+  }
+
+  /// Where irregular vertices are so many that it is the topology which needs them, they stay.
+  void remove_dislocations() {
+    constexpr double most = 0.3;
+    constexpr std::size_t evaluations = 12;
+    const std::size_t work = annealing_work(options_.quality, draft_.mesh.vertices.size());
+    if (work == 0 || measure_quality(draft_.mesh, context_).irregular_ratio > most) return;
+    const Mesh before = draft_.mesh;
+    const DislocationOptions options{
+        .work = work, .size_weight = size_weight_of(options_.evenness), .seed = options_.seed};
+    const DislocationResult result = evenmesh::remove_dislocations(draft_.mesh, projector_.get(), draft_.sizing,
+                                                                   options, context_, draft_.constraints);
+    if (result.accepted == 0) return;
+    if (!intersections(draft_.mesh).empty()) {
+      draft_.mesh = before;
+      return;
+    }
+    find_cells();
+    smooth(evaluations);
+    flip_to_delaunay(draft_.mesh, draft_.constraints, context_);
+  }
+  /// Of vertices that are no longer those of the seeds.
+  void find_cells() {
+    const SampleSet& samples = cells_.sampling.surface();
+    CpuCellEvaluator(samples, context_).nearest(draft_.mesh.vertices, vertex_of_sample_);
+    draft_.planes.clear();
+    const auto shapes = cell_shapes(samples, vertex_of_sample_, draft_.mesh.vertices, context_);
+    for (std::size_t v = 0; v < shapes.size(); ++v)
+      draft_.planes.push_back({draft_.mesh.vertices[v], shapes[v].planes});
   }
 
   /// Where curves are so near to each other, or meet at so acute an angle, that triangles between them are slivers,
@@ -108,11 +143,10 @@ class Refinement {
   void fit() {
     constexpr double sheet_error = 3;  // voxels
     const SampleSet& samples = cells_.sampling.surface();
-    std::vector<std::uint32_t> vertex_of_sample(cells_.labels.size());
-    for (std::size_t i = 0; i < vertex_of_sample.size(); ++i)
-      vertex_of_sample[i] = draft_.vertex_of_label[cells_.labels[i]];
+    if (vertex_of_sample_.empty())
+      for (const std::uint32_t label : cells_.labels) vertex_of_sample_.push_back(draft_.vertex_of_label[label]);
     const double error = cells_.sampling.closed() ? 0 : sheet_error * samples.grid.spacing;
-    fit_extremes(draft_.mesh, samples, vertex_of_sample, projector_.get(), {.sample_error = error}, context_,
+    fit_extremes(draft_.mesh, samples, vertex_of_sample_, projector_.get(), {.sample_error = error}, context_,
                  draft_.constraints);
   }
 
@@ -132,6 +166,7 @@ class Refinement {
   const MeshOptions& options_;
   ExecutionContext& context_;
   std::unique_ptr<Projector> projector_;
+  std::vector<std::uint32_t> vertex_of_sample_;  ///< none: that of the sample's cell
 };
 
 }  // namespace

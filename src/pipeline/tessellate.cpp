@@ -88,7 +88,9 @@ Tessellation tessellate(Sampling sampling, const MeshOptions& options, const Ker
                         ExecutionContext& context) {
   Tessellator state(std::move(sampling), options, kernels, timer, context);
   state.find_features();
-  if (!seed_by_levels(state)) state.relax_all(state.wanted());
+  // Connectivity and shapes are improved afterwards.
+  constexpr double effort = 0.85;
+  if (!seed_by_levels(state)) state.relax_all(state.wanted(), effort);
   state.connect();
   if (!state.closed()) {
     repair_sheets(state);
