@@ -101,6 +101,7 @@ class Smoothing {
         plane_energy_(mesh.vertices.size()) {}
 
   ShapeSmoothingResult run() {
+    const std::vector<Vec3> start = mesh_.vertices;
     each_vertex([&](std::uint32_t v) { stays_[v] = must_stay(v); });
     make_frames();
     result_.energy_before = mean(energy_);
@@ -116,6 +117,7 @@ class Smoothing {
       }
     }
     if (steps % steps_per_projection != 0) move_onto_surface();
+    undo_harm(start);
     result_.energy = mean(energy_);
     return result_;
   }
@@ -159,6 +161,22 @@ class Smoothing {
       base_[v] = p;
       at_[v] = {};
     });
+  }
+
+  /// Where what was bad has become worse, as beside curves that do not give way, vertices go back.
+  void undo_harm(const std::vector<Vec3>& start) {
+    constexpr double bad = 0.7;  // score: Q 0.49, angles of 25°
+    constexpr int rounds = 8;
+    for (int round = 0; round < rounds; ++round) {
+      bool undone = false;
+      for (const std::uint32_t t : triangles_below(mesh_, bad, context_)) {
+        const auto [a, b, c] = mesh_.triangles[t];
+        if (rings_.score(mesh_.triangles[t]) >= VertexRings::score(start[a], start[b], start[c]) - 1e-6) continue;
+        for (const std::uint32_t v : {a, b, c}) mesh_.vertices[v] = start[v];
+        undone = true;
+      }
+      if (!undone) return;
+    }
   }
 
   /// Tangent planes where vertices are now. Coordinates turn as little as they can, so that what is known of the energy

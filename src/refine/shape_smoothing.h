@@ -48,8 +48,9 @@ double size_weight_of(double evenness);
 /// Vertices on feature curves slide along them, corners and vertices on the boundary stay. L-BFGS over two tangential
 /// coordinates per vertex; every tenth step, and after the last, vertices are brought onto the surface.
 /// @param projector  null: vertices stay in the tangent planes
-/// Guarantee: no triangle turns by more than 60° between two of these; same bits for any number of threads. Cost: about
-/// 0.1 µs per triangle and evaluation, two projections per vertex and ten evaluations.
+/// Guarantee: no triangle turns by more than 60° between two of these; none with a score (VertexRings::score) below 0.7
+/// is worse than before, but where eight rounds of taking moves back do not end; same bits for any number of threads.
+/// Cost: about 0.1 µs per triangle and evaluation, two projections per vertex and ten evaluations.
 ShapeSmoothingResult smooth_shapes(Mesh& mesh, const Projector* projector, const SizingField& sizing,
                                    const ShapeSmoothingOptions& options, ExecutionContext& context,
                                    const VertexConstraints& constraints = {});
