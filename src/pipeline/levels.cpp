@@ -117,6 +117,10 @@ class Levels {
     const std::size_t defects = level.defects().size();
     if (defects > 0 && static_cast<double>(defects) <= few_defects * static_cast<double>(level.wanted()))
       repair_solid(level);
+    if (level.result.released_curves > 0) {
+      context_.log("levels: sharp edges are in the way of the topology");
+      return false;
+    }
     if (!level.fits())
       context_.log(fmt::format("levels: {} defects among {} cells", level.defects().size(), level.result.seeds.size()));
     return level.fits();

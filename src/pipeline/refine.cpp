@@ -64,13 +64,20 @@ class Refinement {
       for (const auto& [s, t] : intersections(mesh)) constraints.release(mesh, std::array{s, t});
     const auto find = [&](const Mesh& m) { return intersections(m); };
     const std::size_t left = untangle(mesh, projector_.get(), find, context_, constraints);
-    return {moved_back(std::move(mesh)), left};
+    return {as_checked(moved_back(std::move(mesh))), left};
   }
 
  private:
   Mesh moved_back(Mesh mesh) const {
     if (const Vec3& origin = sampler_.origin(); origin != Vec3{})
       for (Vec3& v : mesh.vertices) v += origin;
+    return mesh;
+  }
+
+  /// What does not intersect itself in a file may do so, by the last bits, before it is rounded: then it is rounded here.
+  Mesh as_checked(Mesh mesh) const {
+    if (fits_single_precision(mesh) && !self_intersections(mesh, context_).empty())
+      mesh.vertices = in_single_precision(mesh.vertices);
     return mesh;
   }
 
