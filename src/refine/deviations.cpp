@@ -20,7 +20,7 @@ Gap GapFinder::largest(std::uint32_t v, std::span<const Vec3> samples) const {
     return true;
   };
   for (const Vec3& p : samples) look(gap_of_sample(p, v));
-  each_of_mesh(v, look);
+  each_of_mesh(v, samples, worst.squared_distance, look);
   return worst;
 }
 
@@ -37,7 +37,7 @@ double GapFinder::deviation(std::uint32_t v, std::span<const Vec3> samples, doub
   std::size_t hint = 0;
   for (const Vec3& p : samples)
     if (!is_within(p, v, worst, hint) && !look(gap_of_sample(p, v))) return std::numeric_limits<double>::infinity();
-  each_of_mesh(v, look);
+  each_of_mesh(v, samples, worst, look);
   return !any ? 0 : worst <= squared_limit ? worst : std::numeric_limits<double>::infinity();
 }
 
@@ -55,10 +55,13 @@ bool GapFinder::is_bent(std::uint32_t v) const {
 }
 
 template <typename Use>
-void GapFinder::each_of_mesh(std::uint32_t v, const Use& use) const {
+void GapFinder::each_of_mesh(std::uint32_t v, std::span<const Vec3> samples, const double& squared_least,
+                             const Use& use) const {
   if (!projector_ || !is_bent(v)) return;
   const double reach = rings_.edge_length(v);
   const auto look = [&](const Vec3& p) {
+    const auto is_near = [&](const Vec3& sample) { return squared_norm(p - sample) <= squared_least; };
+    if (std::any_of(samples.begin(), samples.end(), is_near)) return true;
     const Vec3 q = projector_->project(p, reach);
     return use(Gap{p, q, squared_norm(p - q)});
   };

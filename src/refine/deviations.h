@@ -39,10 +39,10 @@ class GapFinder {
 
  private:
   bool is_bent(std::uint32_t v) const;
-  /// Calls use(gap) for points of the mesh around v until it returns false. Middles of edges and triangles belong to
-  /// one of their bent vertices.
+  /// Calls use(gap) for points of the mesh around v until it returns false, except for those that have a sample within
+  /// √squared_least: the surface is no farther. Middles of edges and triangles belong to one of their bent vertices.
   template <typename Use>
-  void each_of_mesh(std::uint32_t v, const Use& use) const;
+  void each_of_mesh(std::uint32_t v, std::span<const Vec3> samples, const double& squared_least, const Use& use) const;
   Vec3 closest_on(std::uint32_t triangle, const Vec3& p) const;
   /// Looks at triangle number `hint` around v first, and leaves there the one that is near: samples come in an order in
   /// which neighbours follow each other.

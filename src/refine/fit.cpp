@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/parallel.h"
@@ -16,9 +17,12 @@ namespace {
 constexpr double among_the_worst = 0.9;          ///< of the largest deviation: what a round looks at
 constexpr double least_deviation = 0.13;         ///< worth looking at, edge lengths
 constexpr double least_deviation_of_few = 0.08;  ///< where that concerns hardly anybody
+constexpr double near_enough = 0.17;             ///< edge lengths, where it is not few: a move costs shapes around it
 constexpr int max_rounds = 40;
-constexpr int max_rounds_inexact = 4;  ///< on samples off the surface: later rounds only cost quality
-constexpr int max_perturbations = 4;   ///< rounds around the worst where nothing helps there
+constexpr int max_rounds_inexact = 4;              ///< on samples off the surface: later rounds only cost quality
+constexpr int max_perturbations = 4;               ///< rounds around the worst where nothing helps there
+constexpr double worth_another = 0.98;             ///< of the largest deviation: what such a round must have brought
+constexpr std::size_t always_worth_another = 100;  ///< attempts: with fewer it costs little
 
 class Fit {
  public:
@@ -37,18 +41,25 @@ class Fit {
 
   FitResult run() {
     measure();
+    edge_ = mean_edge();
     result_.deviation_before = std::sqrt(deviations_.largest());
     const int rounds = options_.sample_error > 0 ? max_rounds_inexact : max_rounds;
     int perturbations = 0;
     bool perturb = false;
-    for (int round = 0; round < rounds && result_.attempts < max_attempts(); ++round) {
+    double stuck_at = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < rounds && result_.moves < max_moves(); ++round) {
       context_.throw_if_cancelled();
       std::vector<std::uint32_t> list =
           perturb ? around_the_stuck(perturbations) : deviations_.largest_first(among_the_worst);
+      if (is_near_enough()) break;
       if (!perturb && list.size() > max_extremes()) break;
       const bool moved = try_all(std::move(list));
       deviations_.update(*gaps_, cells_, context_);
-      if (!moved && perturbations == max_perturbations) break;
+      if (!moved) {
+        const bool in_vain = deviations_.largest() > worth_another * worth_another * stuck_at;
+        if (perturbations == max_perturbations || (in_vain && result_.attempts > always_worth_another)) break;
+        stuck_at = deviations_.largest();
+      }
       perturb = !moved;
       perturbations += perturb;
     }
@@ -57,9 +68,19 @@ class Fit {
   }
 
  private:
-  /// Extremes are few; else the mesh is too coarse.
-  std::size_t max_attempts() const { return 500 + mesh_.vertices.size() / 20; }
+  /// Extremes are few; else the mesh is too coarse. Every move costs the shapes of the triangles around.
+  std::size_t max_moves() const { return 200 + mesh_.vertices.size() / 300; }
   std::size_t max_extremes() const { return 20 + mesh_.vertices.size() / 200; }
+
+  double mean_edge() const {
+    double sum = 0;
+    for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v) sum += rings_->edge_length(v);
+    return sum / static_cast<double>(mesh_.vertices.size());
+  }
+  bool is_near_enough() const {
+    const double limit = near_enough * edge_;
+    return state_.least_deviation > least_deviation_of_few && deviations_.largest() < limit * limit;
+  }
 
   /// By some samples everywhere, then by all where it is far, and beside that.
   void measure() {
@@ -83,7 +104,7 @@ class Fit {
   }
 
   std::vector<std::uint32_t> around_the_stuck(int perturbation) {
-    constexpr std::size_t max_stuck = 6;
+    constexpr std::size_t max_stuck = 2;
     return deviations_.around_the_largest(max_stuck, 2 + perturbation, *rings_);
   }
 
@@ -136,6 +157,7 @@ class Fit {
   std::optional<GapFinder> gaps_;
   Deviations deviations_;
   FitState state_;
+  double edge_ = 0;          ///< mean length
   std::vector<char> taken_;  ///< by vertex: by attempts of the group
   FitResult result_;
 };

@@ -29,13 +29,15 @@ struct FitResult {
 /// triangle can follow them, the triangle is lifted half way off the surface, by at most a fifth of an edge.
 ///
 /// Each round looks at the vertices where it is nearly as far as at the worst, as long as they are few: a mesh that is
-/// too coarse everywhere has no extremes. Where nothing helps at the worst, those around it are moved.
+/// too coarse everywhere has no extremes. Where nothing helps at the worst, those around it are moved. It ends where
+/// nothing is farther than 0.17 mean edges (0.08 where hardly anything is above 0.13), or after 200 moves and one for
+/// every 300 vertices: each costs the shapes of the triangles around.
 /// @param vertex_of_sample  a vertex near each sample, none (0xffffffff) for small components: the nearest one, or what
 ///                          was nearest before vertices moved by less than an edge
 /// @param projector         null: distances from the mesh to the surface do not count
 /// Guarantee: no triangle falls below the floor, or below the worst around where that is lower; closed two-manifolds
 /// stay so, with the same numbers of vertices and triangles; same bits for any number of threads. Cost: about 30 ns per
-/// sample, and most of a millisecond for every place tried: 500 and a twentieth of the vertices at most.
+/// sample, and half a millisecond for every place tried.
 FitResult fit_extremes(Mesh& mesh, const SampleSet& samples, std::span<const std::uint32_t> vertex_of_sample,
                        const Projector* projector, const FitOptions& options, ExecutionContext& context,
                        const VertexConstraints& constraints = {});
