@@ -119,7 +119,8 @@ struct Artifacts {
 ///
 /// Guarantee: closed, two-manifold, oriented outward, without self-intersections; what could not be kept is a finding
 /// of severity broken_promise. The shell method gives a boundary where the surface is open. Same bytes for any number
-/// of threads. Cost: two cores take about 0.1 ms and 7 kB per vertex.
+/// of threads. Triangles of closed solids have Q ≥ 0.7 and angles ≥ 38° where sharp edges and thin parts allow it
+/// (docs/quality.md). Cost: two cores take about 0.1 ms and 7 kB per vertex, Quality::high up to five times as long.
 /// @param kept  may be null: nothing is kept
 /// @throws InvalidInput   options out of range
 /// @throws UnusableInput  no surface within the bounds, or their longest side is not between 1e-8 and 1e10
