@@ -53,7 +53,9 @@ class Levels {
       if (!connected(*next)) return false;
       level = std::move(next);
       mesh = extracted(*level);
-      smooth(mesh, level->result.sampling.samples, level_evaluations);
+      const SampleSet& samples = level->result.sampling.samples;
+      smooth(mesh, samples, level_evaluations);
+      if (options_.quality == Quality::high) remove_dislocations(mesh, samples);
     }
     return true;
   }
@@ -149,7 +151,6 @@ class Levels {
       smooth(draft, samples, base_evaluations);
       if (options_.quality == Quality::fast) return;
       remove_dislocations(draft, samples);
-      smooth(draft, samples, base_evaluations / 2);
     });
     return draft;
   }
@@ -161,6 +162,7 @@ class Levels {
     const DislocationResult result =
         evenmesh::remove_dislocations(draft.mesh, projector.get(), draft.sizing, options, context_, draft.constraints);
     draft.planes.clear();
+    smooth(draft, samples, level_evaluations);
     context_.log(fmt::format("levels: {} irregular vertices of {}, {} after annealing", result.irregular_before,
                              draft.mesh.vertices.size(), result.irregular));
   }

@@ -54,7 +54,7 @@ class Refinement {
     flip_to_delaunay(mesh, constraints, context_);
     smooth();
     flip_to_delaunay(mesh, constraints, context_);
-    if (!cells_.seeds_are_vertices) remove_dislocations();
+    if (!cells_.seeds_are_vertices || options_.quality == Quality::high) remove_dislocations();
     polish(mesh, projector_.get(), context_, constraints);
     flip_to_delaunay(mesh, constraints, context_);
     release_features();
@@ -74,7 +74,8 @@ class Refinement {
     return mesh;
   }
 
-  /// What does not intersect itself in a file may do so, by the last bits, before it is rounded: then it is rounded here.
+  /// What does not intersect itself in a file may do so, by the last bits, before it is rounded: then it is rounded
+  /// here.
   Mesh as_checked(Mesh mesh) const {
     if (fits_single_precision(mesh) && !self_intersections(mesh, context_).empty())
       mesh.vertices = in_single_precision(mesh.vertices);
@@ -90,8 +91,8 @@ class Refinement {
   }
 
   void smooth() {
-    constexpr std::size_t evaluations = 20, of_smooth_ones = 10;
-    smooth(cells_.seeds_are_vertices ? of_smooth_ones : evaluations);
+    constexpr std::size_t evaluations = 20, of_smooth_ones = 10, thorough = 40;
+    smooth(options_.quality == Quality::high ? thorough : cells_.seeds_are_vertices ? of_smooth_ones : evaluations);
   }
   void smooth(std::size_t evaluations) {
     Mesh& mesh = draft_.mesh;
@@ -105,7 +106,6 @@ class Refinement {
   /// Where irregular vertices are so many that it is the topology which needs them, they stay.
   void remove_dislocations() {
     constexpr double most = 0.3;
-    constexpr std::size_t evaluations = 12;
     const std::size_t work = annealing_work(options_.quality, draft_.mesh.vertices.size());
     if (work == 0 || measure_quality(draft_.mesh, context_).irregular_ratio > most) return;
     const Mesh before = draft_.mesh;
@@ -119,7 +119,7 @@ class Refinement {
       return;
     }
     find_cells();
-    smooth(evaluations);
+    smooth();
     flip_to_delaunay(draft_.mesh, draft_.constraints, context_);
   }
   /// Of vertices that are no longer those of the seeds.

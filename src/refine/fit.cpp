@@ -69,8 +69,8 @@ class Fit {
 
  private:
   /// Extremes are few; else the mesh is too coarse. Every move costs the shapes of the triangles around.
-  std::size_t max_moves() const { return 200 + mesh_.vertices.size() / 300; }
-  std::size_t max_extremes() const { return 20 + mesh_.vertices.size() / 200; }
+  std::size_t max_moves() const { return 260 + mesh_.vertices.size() / 420; }
+  std::size_t max_extremes() const { return 5 + mesh_.vertices.size() / 200; }
 
   double mean_edge() const {
     double sum = 0;

@@ -30,8 +30,8 @@ struct FitResult {
 ///
 /// Each round looks at the vertices where it is nearly as far as at the worst, as long as they are few: a mesh that is
 /// too coarse everywhere has no extremes. Where nothing helps at the worst, those around it are moved. It ends where
-/// nothing is farther than 0.17 mean edges (0.08 where hardly anything is above 0.13), or after 200 moves and one for
-/// every 300 vertices: each costs the shapes of the triangles around.
+/// nothing is farther than 0.17 mean edges (0.08 where hardly anything is above 0.13), or after 260 moves and one for
+/// every 420 vertices: each costs the shapes of the triangles around.
 /// @param vertex_of_sample  a vertex near each sample, none (0xffffffff) for small components: the nearest one, or what
 ///                          was nearest before vertices moved by less than an edge
 /// @param projector         null: distances from the mesh to the surface do not count
