@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "geometry/single_precision.h"
 #include "refine/dislocations.h"
@@ -52,13 +53,7 @@ class Refinement {
       return {moved_back(std::move(mesh)), pairs};
     }
     flip_to_delaunay(mesh, constraints, context_);
-    smooth();
-    flip_to_delaunay(mesh, constraints, context_);
-    if (!cells_.seeds_are_vertices || options_.quality == Quality::high) remove_dislocations();
-    polish(mesh, projector_.get(), context_, constraints);
-    flip_to_delaunay(mesh, constraints, context_);
-    release_features();
-    if (options_.placement == Placement::quadric) fit();
+    smooth_and_fit();
     finish_projection();
     if (!constraints.curve.empty())
       for (const auto& [s, t] : intersections(mesh)) constraints.release(mesh, std::array{s, t});
@@ -103,24 +98,53 @@ class Refinement {
     undo_intersections(mesh, before, [&](const Mesh& m) { return intersections(m); });
   }
 
-  /// Where irregular vertices are so many that it is the topology which needs them, they stay.
-  void remove_dislocations() {
+  /// More regular connectivity may not reach as far into corners and claws as what there was: where fitting leaves it
+  /// far off, what reaches farther is taken instead.
+  void smooth_and_fit() {
+    constexpr double far = 0.25;  // edges
+    smooth();
+    flip_to_delaunay(draft_.mesh, draft_.constraints, context_);
+    std::optional<Draft> smoothed;
+    if (!cells_.seeds_are_vertices || options_.quality == Quality::high) {
+      smoothed = draft_;
+      if (!remove_dislocations()) smoothed.reset();
+    }
+    const double distance = polish_and_fit();
+    if (smoothed && distance > far * draft_.sizing.mean()) take_if_nearer(std::move(*smoothed), distance);
+  }
+  void take_if_nearer(Draft other, double distance) {
+    constexpr double nearer = 0.8;
+    std::vector<std::uint32_t> vertex_of_sample;
+    std::swap(draft_, other);
+    std::swap(vertex_of_sample_, vertex_of_sample);
+    if (polish_and_fit() < nearer * distance) return;
+    std::swap(draft_, other);
+    std::swap(vertex_of_sample_, vertex_of_sample);
+  }
+  /// @return the largest distance that is left, model units
+  double polish_and_fit() {
+    polish(draft_.mesh, projector_.get(), context_, draft_.constraints);
+    flip_to_delaunay(draft_.mesh, draft_.constraints, context_);
+    release_features();
+    return options_.placement == Placement::quadric ? fit() : 0;
+  }
+
+  /// Where irregular vertices are so many that it is the topology which needs them, they stay. Whether any moved.
+  bool remove_dislocations() {
     constexpr double most = 0.3;
     const std::size_t work = annealing_work(options_.quality, draft_.mesh.vertices.size());
-    if (work == 0 || measure_quality(draft_.mesh, context_).irregular_ratio > most) return;
-    const Mesh before = draft_.mesh;
+    if (work == 0 || measure_quality(draft_.mesh, context_).irregular_ratio > most) return false;
+    Mesh mesh = draft_.mesh;
     const DislocationOptions options{
         .work = work, .size_weight = size_weight_of(options_.evenness), .seed = options_.seed};
-    const DislocationResult result = evenmesh::remove_dislocations(draft_.mesh, projector_.get(), draft_.sizing,
-                                                                   options, context_, draft_.constraints);
-    if (result.accepted == 0) return;
-    if (!intersections(draft_.mesh).empty()) {
-      draft_.mesh = before;
-      return;
-    }
+    const DislocationResult result =
+        evenmesh::remove_dislocations(mesh, projector_.get(), draft_.sizing, options, context_, draft_.constraints);
+    if (result.accepted == 0 || !intersections(mesh).empty()) return false;
+    draft_.mesh = std::move(mesh);
     find_cells();
     smooth();
     flip_to_delaunay(draft_.mesh, draft_.constraints, context_);
+    return true;
   }
   /// Of vertices that are no longer those of the seeds.
   void find_cells() {
@@ -147,14 +171,16 @@ class Refinement {
     flip_to_delaunay(draft_.mesh, draft_.constraints, context_);
   }
 
-  void fit() {
+  /// @return the largest distance that is left, model units
+  double fit() {
     constexpr double sheet_error = 3;  // voxels
     const SampleSet& samples = cells_.sampling.surface();
     if (vertex_of_sample_.empty())
       for (const std::uint32_t label : cells_.labels) vertex_of_sample_.push_back(draft_.vertex_of_label[label]);
     const double error = cells_.sampling.closed() ? 0 : sheet_error * samples.grid.spacing;
-    fit_extremes(draft_.mesh, samples, vertex_of_sample_, projector_.get(), {.sample_error = error}, context_,
-                 draft_.constraints);
+    return fit_extremes(draft_.mesh, samples, vertex_of_sample_, projector_.get(), {.sample_error = error}, context_,
+                        draft_.constraints)
+        .deviation;
   }
 
   /// What was projected onto the samples only goes the rest of the way.

@@ -13,10 +13,10 @@
 namespace evenmesh {
 
 struct Tessellation {
-  Sampling sampling;           ///< small components may have gone, and the solid been changed where it did not fit
-  FeatureCurves features;      ///< those that are followed
-  FeatureSeeds feature_seeds;  ///< the fixed ones among the seeds, and which of them are neighbours
-  Seeds seeds;                 ///< one per label
+  Sampling sampling;                ///< small components may have gone, and the solid been changed where it did not fit
+  FeatureCurves features;           ///< those that are followed
+  FeatureSeeds feature_seeds;       ///< the fixed ones among the seeds, and which of them are neighbours
+  Seeds seeds;                      ///< one per label
   bool seeds_are_vertices = false;  ///< seeds lie on the surface where vertices shall be; else cells tell that place
   std::vector<std::uint32_t> labels;  ///< one per sample
   LabelComplex complex;               ///< triangles of labels

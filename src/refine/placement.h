@@ -14,7 +14,7 @@ namespace evenmesh {
 struct CellShape {
   double area = 0;
   Vec3 centroid;
-  Vec3 vertex;  ///< minimum of the quadric of the samples' tangent planes, held to the centroid
+  Vec3 vertex;     ///< minimum of the quadric of the samples' tangent planes, held to the centroid
   Quadric planes;  ///< these, about the seed, by the samples' areas
 };
 

@@ -130,8 +130,8 @@ class Smoothing {
     if (v < options_.held.size() && options_.held[v] != 0) return true;
     // Where a curve turns as much as its chords may, they must not become longer.
     constexpr double tight = 0.5;
-    return constraints_.vertex(v) && constraints_.chordal_deviation(mesh_, v, rings_.neighbours(v)) >
-                                         tight * constraints_.max_chordal_deviation;
+    return constraints_.vertex(v) &&
+           constraints_.chordal_deviation(mesh_, v, rings_.neighbours(v)) > tight * constraints_.max_chordal_deviation;
   }
   template <typename Op>
   void each_vertex(const Op& op) const {
