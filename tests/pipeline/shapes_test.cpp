@@ -176,8 +176,8 @@ TEST(TopologyRepair, PinsAreMeshedWithTheVerticesTheyNeed) {
   EXPECT_EQ(result.report.quality.euler, 2);
   EXPECT_EQ(result.report.quality.components, 1u);
   EXPECT_FALSE(has_finding(result.report, FindingCode::gaps_filled));
-  // Fitting lifts triangles off what is thinner than they can follow, by a fifth of an edge.
-  const double lifted = 0.21 * result.report.quality.edge_length_avg;
+  // Fitting lifts triangles off what is thinner than they can follow, by a fifth of an edge there.
+  const double lifted = 0.25 * result.report.quality.edge_length_avg;
   double highest = 0;
   for (const Vec3& v : result.mesh.vertices) {
     highest = std::max(highest, v.z);
