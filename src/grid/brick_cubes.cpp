@@ -53,10 +53,10 @@ class Neighbourhood {
     block_.fill(none);
     const auto at = morton_decode(middle.key);
     for (int n = 0; n < 27; ++n) {
-      const int dx = n % 3 - 1, dy = n / 3 % 3 - 1, dz = n / 9 - 1;
-      if (std::min({at[0] + dx, at[1] + dy, at[2] + dz}) < 0) continue;
+      const int dx = n % 3 - 1, dy = n / 3 % 3 - 1, dz = n / 9 - 1, x = at[0] + dx, y = at[1] + dy, z = at[2] + dz;
+      if (std::min({x, y, z}) < 0) continue;
       const std::uint64_t key =
-          morton_code(std::uint64_t(at[0] + dx), std::uint64_t(at[1] + dy), std::uint64_t(at[2] + dz));
+          morton_code(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y), static_cast<std::uint64_t>(z));
       const auto found =
           std::lower_bound(tiles.begin(), tiles.end(), key, [](const Tile& t, std::uint64_t k) { return t.key < k; });
       if (found != tiles.end() && found->key == key) add(*found, {dx * Tile::side, dy * Tile::side, dz * Tile::side});
@@ -68,7 +68,8 @@ class Neighbourhood {
  private:
   static constexpr int side = Tile::side + 2;
   static std::size_t index(int x, int y, int z) {
-    return static_cast<std::size_t>(x + 1 + side * (y + 1 + side * (z + 1)));
+    const int i = x + 1 + side * (y + 1 + side * (z + 1));
+    return static_cast<std::size_t>(i);
   }
   void add(const Tile& tile, const std::array<int, 3>& from) {
     auto next = static_cast<std::int32_t>(tile.first);

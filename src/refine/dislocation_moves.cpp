@@ -20,7 +20,8 @@ double weight_of(int cost) {
     for (int i = 0; i < 33; ++i) weights[static_cast<std::size_t>(i)] = std::exp(-0.8 * (i - 16));
     return weights;
   }();
-  return cost > 16 ? 0 : table[static_cast<std::size_t>(std::max(cost, -16) + 16)];
+  const int i = std::max(cost, -16) + 16;
+  return cost > 16 ? 0 : table[static_cast<std::size_t>(i)];
 }
 
 }  // namespace

@@ -82,6 +82,7 @@ class Annealing {
       if (!mesh_.triangle_in_use(t)) slots[triangles++ / 2 % parts].triangles.push_back(t);
     const int all = surplus(), n = static_cast<int>(parts);
     std::vector<DislocationMoves> moves;
+    moves.reserve(parts);
     for (int p = 0; p < n; ++p)
       moves.emplace_back(common_, points_, constraints_, static_cast<std::uint32_t>(p),
                          std::move(slots[static_cast<std::size_t>(p)]), random_.bits(),

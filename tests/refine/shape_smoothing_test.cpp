@@ -94,12 +94,12 @@ TEST(ShapeSmoothing, BoundariesAndDegenerateTrianglesDoNotMove) {
 /// A roof: planes that meet in the ridge y = 0.
 TEST(ShapeSmoothing, PlanesHoldVerticesToRidges) {
   ExecutionContext context(2);
-  constexpr int n = 9;
+  constexpr int n = 9, middle = n / 2;
   Mesh roof;
   Random random(2);
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
-      const double x = i + 0.5 * (j % 2) + 0.1 * random.gaussian(), y = 0.87 * (j - n / 2);
+      const double x = i + 0.5 * (j % 2) + 0.1 * random.gaussian(), y = 0.87 * (j - middle);
       roof.vertices.push_back({x, y, -std::abs(y)});
     }
   for (std::uint32_t j = 0; j + 1 < n; ++j)
@@ -122,7 +122,7 @@ TEST(ShapeSmoothing, PlanesHoldVerticesToRidges) {
     Mesh mesh = roof;
     smooth_shapes(mesh, nullptr, SizingField(1), {.evaluations = 40, .planes = of}, context);
     double most = 0;
-    for (std::size_t i = 1; i + 1 < n; ++i) most = std::max(most, std::abs(mesh.vertices[n / 2 * n + i].y));
+    for (std::size_t i = 1; i + 1 < n; ++i) most = std::max(most, std::abs(mesh.vertices[middle * n + i].y));
     return most;
   };
   EXPECT_LT(off_ridge(planes), 0.5 * off_ridge({}));
