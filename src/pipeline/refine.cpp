@@ -101,7 +101,7 @@ class Refinement {
   /// More regular connectivity may not reach as far into corners and claws as what there was: where fitting leaves it
   /// far off, what reaches farther is taken instead.
   void smooth_and_fit() {
-    constexpr double far = 0.25;  // edges
+    constexpr double far = 0.32;  // edges
     smooth();
     flip_to_delaunay(draft_.mesh, draft_.constraints, context_);
     std::optional<Draft> smoothed;
