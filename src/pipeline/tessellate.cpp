@@ -88,8 +88,8 @@ Tessellation tessellate(Sampling sampling, const MeshOptions& options, const Ker
                         ExecutionContext& context) {
   Tessellator state(std::move(sampling), options, kernels, timer, context);
   state.find_features();
-  // Connectivity and shapes are improved afterwards.
-  constexpr double effort = 0.85;
+  // Connectivity and shapes are improved afterwards; cells beside sharp edges have to fit.
+  const double effort = state.fixed() > 0 ? 1 : 0.85;
   if (!seed_by_levels(state)) state.relax_all(state.wanted(), effort);
   state.connect();
   if (!state.closed()) {
