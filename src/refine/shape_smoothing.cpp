@@ -127,7 +127,6 @@ class Smoothing {
   bool stays(std::uint32_t v) const { return stays_[v] != 0; }
   bool must_stay(std::uint32_t v) const {
     if (rings_.triangles(v).empty() || rings_.on_boundary(v) || constraints_.at_corner(v)) return true;
-    if (v < options_.held.size() && options_.held[v] != 0) return true;
     // Where a curve turns as much as its chords may, they must not become longer.
     constexpr double tight = 0.5;
     return constraints_.vertex(v) &&

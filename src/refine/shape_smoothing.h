@@ -23,7 +23,6 @@ struct ShapeSmoothingOptions {
   double size_weight = 0.1;              ///< μ, at least 0: what equal sizes count against equal angles
   std::size_t evaluations = 20;          ///< of the energy, about
   std::span<const CellPlanes> planes{};  ///< by vertex; none: nothing holds vertices to ridges and tips
-  std::span<const char> held{};          ///< by vertex: not 0 where it stays
 };
 
 struct ShapeSmoothingResult {

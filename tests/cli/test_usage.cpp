@@ -1,5 +1,7 @@
 /// Help, and what the program says to wrong command lines and unreadable inputs.
 
+#include <fstream>
+
 #include "program.h"
 
 namespace evenmesh::test {
@@ -18,6 +20,22 @@ void expect_one_sentence(const Outcome& outcome, const std::string& fragment) {
 
 const std::vector<std::string> all_commands{"mesh",   "info",   "compare", "gallery", "render", "boolean",
                                             "offset", "repair", "wrap",    "track",   "advect", "mill"};
+
+/// A reader copies them.
+TEST_F(Usage, ExpressionsOfTheReadmeAreMeshed) {
+  std::ifstream file(std::string(EVENMESH_SOURCE_DIR) + "/README.md");
+  ASSERT_TRUE(file);
+  std::size_t found = 0;
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t at = line.find("mesh -e '");
+    if (at == std::string::npos) continue;
+    const std::size_t from = at + 9, to = line.find('\'', from);
+    const Outcome outcome = run({"mesh", "-e", line.substr(from, to - from), "-n", "300", "-o", "x.ply"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    ++found;
+  }
+  EXPECT_GT(found, 0u);
+}
 
 TEST_F(Usage, HelpListsEveryCommand) {
   const Outcome outcome = run({"--help"});

@@ -64,21 +64,6 @@ TEST(ShapeSmoothing, ThreadsDoNotMatter) {
   EXPECT_EQ(one.result.energy, many.result.energy);
 }
 
-TEST(ShapeSmoothing, WhatIsHeldStays) {
-  const Mesh before = perturbed_sphere(3, 0.03, 5);
-  std::vector<char> held(before.vertices.size(), 0);
-  for (std::size_t v = 0; v < held.size(); v += 3) held[v] = 1;
-  const SmoothedSphere after({.held = held}, 2, before);
-  std::size_t moved = 0;
-  for (std::size_t v = 0; v < held.size(); ++v) {
-    if (held[v]) {
-      EXPECT_EQ(after.mesh.vertices[v], before.vertices[v]);
-    }
-    moved += after.mesh.vertices[v] != before.vertices[v];
-  }
-  EXPECT_GT(moved, held.size() / 2);
-}
-
 TEST(ShapeSmoothing, BoundariesAndDegenerateTrianglesDoNotMove) {
   ExecutionContext context(2);
   Mesh mesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, 0.4, 0}}, .triangles = {}};
